@@ -6,7 +6,9 @@ use crate::settings::{self, get, harmonics};
 use crate::watch::computed;
 use pyo3::prelude::*;
 use std::sync::Arc;
-use stickslip_core::design::{self, Amplitudes, ModeEnd, ModeMethod, ModeSettings, NonlinearMode};
+use stickslip_core::design::{
+    self, Amplitudes, Corner, ModeEnd, ModeMethod, ModeSettings, NonlinearMode,
+};
 use stickslip_core::Model;
 
 /// A nonlinear mode as columns.
@@ -50,12 +52,14 @@ fn branch<'py>(
     columns.end()
 }
 
-/// The nonlinear mode of a model.
+/// The nonlinear mode of a model; with friction pushed to a corner of what Coulomb allows, if one is
+/// given.
 #[pyfunction]
 pub fn nonlinear_mode<'py>(
     py: Python<'py>,
     problem: &Problem,
     settings: &Bound<'_, PyAny>,
+    corner: Option<(usize, f64)>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let amplitudes: Vec<f64> = get(settings, "amplitudes")?;
@@ -75,6 +79,7 @@ pub fn nonlinear_mode<'py>(
         tolerance: get(settings, "tolerance")?,
         max_harmonics: get(settings, "max_harmonics")?,
         residual: settings::residual(&settings.getattr("residual")?)?,
+        corner: corner.map(|(number, share)| Corner { number, share }),
         most: get(settings, "max_points")?,
     };
     let model = Arc::clone(&problem.model);

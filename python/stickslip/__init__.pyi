@@ -285,7 +285,7 @@ def nonlinear_modes(
     *,
     amplitude: ArrayLike | tuple[float, float],
     max_iterations: int = 100,
-    residual: Literal["centred", "from_rest"] | float | None = None,
+    residual: Literal["centred", "from_rest", "bounds"] | float | None = None,
     harmonics: int | Literal["auto"] = "auto",
     tolerance: float = 0.001,
     max_harmonics: int = 63,

@@ -259,7 +259,7 @@ class NonlinearMode:
     counters: dict[str, int]
 
 def nonlinear_mode(
-    problem: Problem, settings: ModeSettings, progress: Progress
+    problem: Problem, settings: ModeSettings, corner: tuple[int, float] | None, progress: Progress
 ) -> NonlinearMode: ...
 def period_multipliers(
     problem: Problem,

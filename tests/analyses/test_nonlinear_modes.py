@@ -121,6 +121,38 @@ def test_two_blades_and_a_wedge():
     assert held.damping_ratio[1] == pytest.approx(0.01547973, rel=1e-3)
 
 
+def test_bounds_over_residual_tractions():
+    # -μN and its opposite, and none, of contact 1, which sticks up to lg a = -2.3
+    logs = np.array([-2.9, -2.8, -2.7, -2.5, -2.3, -2.0])
+    keys = {"mode": 2, "amplitude": 10.0**logs, "harmonics": 5}
+    found = ss.nonlinear_modes(wedge(), residual="bounds", **keys)
+    low, high = (found.omega_bounds / (2.0 * np.pi)).T
+    least, most = found.damping_bounds.T
+    # independently computed: 49.187874 Hz and .01547973 with -μN, 48.048205 Hz without
+    assert high[1] == pytest.approx(49.187874, rel=1e-5)
+    assert least[1] == pytest.approx(0.01547973, rel=1e-3)
+    assert low[1] < 48.048205
+    assert (high[:4] > 1.005 * low[:4]).all()
+    assert high[5] == pytest.approx(low[5], rel=1e-6)
+    for residual in (-60.0, -8.0, 0.0, 2.0, 45.0, "centred", "from_rest"):
+        one = ss.nonlinear_modes(wedge(), residual=residual, **keys)
+        ends = ((one.omega / (2.0 * np.pi), low, high), (one.damping_ratio, least, most))
+        for value, below, above in ends:
+            assert (value > below * (1.0 - 1e-6)).all()
+            assert (value < above * (1.0 + 1e-6)).all()
+    (told,) = [one for one in found.diagnostics if one.code == "bounds"]
+    assert told.data["points"] in (4, 5)
+    assert found.settings.residual == "from_rest"
+    plain = ss.nonlinear_modes(wedge(), **keys)
+    assert np.isnan(plain.omega_bounds).all()
+    np.testing.assert_array_equal(plain.omega, found.omega)
+    with pytest.raises(ss.ModelError, match="quasi-static"):
+        ss.nonlinear_modes(wedge(), residual="bounds", method="quasi-static", **keys)
+    whole = ss.nonlinear_modes(wedge(), mode=2, amplitude=(1e-3, 5e-3), residual="bounds")
+    ax = whole.plot()
+    assert [one.get_label() for one in ax.collections] == ["all residual tractions"]
+
+
 def test_four_decades_of_a_wedge_are_followed():
     mode = ss.nonlinear_modes(
         wedge(), mode=2, amplitude=(1e-6, 1e-1), harmonics=5, residual="centred"

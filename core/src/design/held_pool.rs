@@ -111,7 +111,7 @@ impl HeldPool<'_> {
 
 /// On which side of its range a slider is in a corner: all corners in turn of up to three sliders, of
 /// more those of the columns of a Hadamard matrix.
-fn is_low(corner: usize, slider: usize) -> bool {
+pub(super) fn is_low(corner: usize, slider: usize) -> bool {
     (corner & (1 << (slider % 3) | (slider / 3))).count_ones() % 2 == 0
 }
 

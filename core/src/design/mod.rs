@@ -35,7 +35,7 @@ pub use curve::{peak_curve, Curve, Peak, Target};
 pub use global_peak::{summits, GlobalPeak, PeakQuery, Summits};
 pub use mistuned::TunedDisk;
 pub use mode_point::{Interaction, ModePoint};
-pub use mode_settings::{Amplitudes, ModeEnd, ModeMethod, ModeSettings, NonlinearMode};
+pub use mode_settings::{Amplitudes, Corner, ModeEnd, ModeMethod, ModeSettings, NonlinearMode};
 pub use nonlinear_mode::nonlinear_mode;
 pub use optimum::{optimum, Optimum};
 pub use orbit_bounds::bound_orbits;

@@ -65,10 +65,10 @@ impl<'a> Walk<'a> {
             HarmonicChoice::Auto => fewest(settings),
         };
         Error::check_order("harmonics", kept, crate::balance::HIGHEST_ORDER)?;
-        settings.residual.check()?;
+        residuals.iter().try_for_each(|residual| residual.check())?;
         let odd = model.laws().iter().all(|law| law.is_odd());
         let loaded = model.compliance().forced_harmonics().contains(&0);
-        let half_wave = odd && !loaded && settings.residual.is_symmetric();
+        let half_wave = odd && !loaded && residuals.iter().all(|one| one.is_symmetric());
         let bases = model.modal_bases(4 * settings.max_harmonics.max(kept))?;
         let table = Arc::new(SampleTable::new(Harmonics::new(kept, half_wave)));
         let rest = if half_wave { vec![0.0; bases.at(0).modes()] } else { at_rest(model, &bases)? };

@@ -25,6 +25,15 @@ pub enum ModeMethod {
     QuasiStatic,
 }
 
+/// Forces that all contacts hold, to one side or the other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Corner {
+    /// Which sides, from 0: all of up to three laws, of more eight that differ.
+    pub number: usize,
+    /// How much of what they can hold at rest, up to 1: there motion pushes them to their limits.
+    pub share: f64,
+}
+
 /// What is asked of a nonlinear mode.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ModeSettings {
@@ -40,8 +49,10 @@ pub struct ModeSettings {
     pub tolerance: f64,
     /// Highest harmonic that automatic ones may reach.
     pub max_harmonics: usize,
-    /// Assumed force at mid-range of contacts that never slip.
+    /// Assumed force at mid-range of contacts that never slip, …
     pub residual: Residual,
+    /// … or what they hold instead.
+    pub corner: Option<Corner>,
     /// Most points.
     pub most: usize,
 }

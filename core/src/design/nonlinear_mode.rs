@@ -3,11 +3,12 @@
 //! It begins as the linear mode of the structure with its contacts as they are at rest, and is followed
 //! by arclength in the logarithm of the amplitude, around the turns that contacts make as they lift off.
 
+use super::held_pool::is_low;
 use super::mode_branch::Walk;
-use super::mode_settings::{ModeEnd, ModeMethod, ModeSettings, NonlinearMode};
+use super::mode_settings::{Corner, ModeEnd, ModeMethod, ModeSettings, NonlinearMode};
 use super::quasi_static::quasi_static_mode;
 use crate::balance::{HarmonicChoice, Progress};
-use crate::contact::{ContactLaw, Residual};
+use crate::contact::{ContactLaw, Held, Residual};
 use crate::model::Model;
 use crate::timing::Profile;
 use crate::Error;
@@ -15,6 +16,9 @@ use std::time::Instant;
 
 /// Amplitude, relative to the least one that is asked for, at which a motion leaves the state at rest as it is.
 const STILL: f64 = 1e-4;
+
+/// Force \[N\] that no contact holds.
+const BEYOND: f64 = 1e100;
 
 /// The nonlinear mode of a model; its loads but static ones are left out.
 ///
@@ -29,19 +33,21 @@ pub fn nonlinear_mode(
         return quasi_static_mode(model, settings, progress);
     }
     let start = Instant::now();
-    let made = match settings.residual {
-        Residual::FromRest => crate::balance::with_history(model)?,
-        Residual::Centred | Residual::Value(_) => held_at_rest(model, settings, progress)?,
+    let residuals = residuals_of(model, settings, progress)?;
+    let made = if residuals.contains(&Residual::FromRest) {
+        crate::balance::with_history(model)?
+    } else {
+        held_at_rest(model, settings, residuals.clone(), progress)?
     };
-    let residual = |law: &dyn ContactLaw| {
-        let held = made.is_some() && keeps_history(law);
+    let residual = |(law, given): (&Box<dyn ContactLaw>, &Residual)| {
+        let held = made.is_some() && keeps_history(law.as_ref());
         if held {
             Residual::FromRest
         } else {
-            settings.residual
+            *given
         }
     };
-    let residuals = model.laws().iter().map(|law| residual(law.as_ref())).collect();
+    let residuals = model.laws().iter().zip(&residuals).map(residual).collect();
     let mut walk = Walk::new(made.as_ref().unwrap_or(model), settings, residuals, progress)?;
     let (low, _) = walk.bounds();
     let end = match walk.begin(low) {
@@ -67,6 +73,37 @@ pub fn nonlinear_mode(
     })
 }
 
+/// The forces that contacts are assumed to hold, law by law.
+fn residuals_of(
+    model: &Model,
+    settings: &ModeSettings,
+    progress: &Progress<'_>,
+) -> Result<Vec<Residual>, Error> {
+    let laws = model.laws().len();
+    let Some(Corner { number, share }) = settings.corner else {
+        return Ok(vec![settings.residual; laws]);
+    };
+    // Forces without a mean leave the half period that does not tell what is held.
+    let mut held = vec![Residual::Value(f64::MIN_POSITIVE); laws];
+    let mut forces = vec![BEYOND; laws];
+    if share < 1.0 {
+        let settings = simplest(settings);
+        let Some(mut walk) = at_rest(model, &settings, held.clone(), progress)? else {
+            return Ok(held);
+        };
+        for (index, law) in model.laws().iter().enumerate() {
+            let of =
+                |known: Held| 0.5 * (known.range[1] - known.range[0]) * law.stiffness()[(0, 0)];
+            let held = law.held(walk.equations().motion(index)).into_iter().flatten().next();
+            forces[index] = share * held.map_or(0.0, of);
+        }
+    }
+    for (law, (held, force)) in held.iter_mut().zip(forces).enumerate() {
+        *held = Residual::Value(if is_low(number, law) { -force } else { force });
+    }
+    Ok(held)
+}
+
 /// Whether friction keeps what it had at rest.
 fn keeps_history(law: &dyn ContactLaw) -> bool {
     let (displacement, state) = law.beginning();
@@ -79,24 +116,14 @@ fn keeps_history(law: &dyn ContactLaw) -> bool {
 fn held_at_rest(
     model: &Model,
     settings: &ModeSettings,
+    residuals: Vec<Residual>,
     progress: &Progress<'_>,
 ) -> Result<Option<Model>, Error> {
     if !model.laws().iter().any(|law| keeps_history(law.as_ref())) {
         return Ok(None);
     }
-    let (harmonics, method) = (HarmonicChoice::Fixed(1), ModeMethod::Periodic);
-    let settings = ModeSettings { harmonics, method, ..settings.clone() };
-    let residuals = vec![settings.residual; model.laws().len()];
-    let mut walk = Walk::new(model, &settings, residuals, progress)?;
-    if walk.equations().harmonics().half_wave() {
-        return Ok(None);
-    }
-    let (low, _) = walk.bounds();
-    let Some(mut z) = walk.begin(low + STILL.ln()) else { return Ok(None) };
-    // Without the motion.
-    let size = z.len();
-    z[size - 1] = f64::MIN_POSITIVE.sqrt().ln();
-    walk.equations().evaluate(&z);
+    let settings = simplest(settings);
+    let Some(mut walk) = at_rest(model, &settings, residuals, progress)? else { return Ok(None) };
     let equations = walk.equations();
     let slots = equations.harmonics().slots();
     let laws = model.laws().iter().zip(model.points()).enumerate().map(|(index, (law, points))| {
@@ -107,4 +134,30 @@ fn held_at_rest(
             .unwrap_or_else(|| law.with_scaled_forces(1.0))
     });
     model.with_laws(laws.collect()).map(Some)
+}
+
+/// The settings with one harmonic.
+fn simplest(settings: &ModeSettings) -> ModeSettings {
+    let (harmonics, method) = (HarmonicChoice::Fixed(1), ModeMethod::Periodic);
+    ModeSettings { harmonics, method, ..settings.clone() }
+}
+
+/// The equations at the equilibrium, as evaluated without the motion; nothing if there is none, or
+/// nothing has a mean.
+fn at_rest<'a>(
+    model: &'a Model,
+    settings: &'a ModeSettings,
+    residuals: Vec<Residual>,
+    progress: &'a Progress<'a>,
+) -> Result<Option<Walk<'a>>, Error> {
+    let mut walk = Walk::new(model, settings, residuals, progress)?;
+    if walk.equations().harmonics().half_wave() {
+        return Ok(None);
+    }
+    let (low, _) = walk.bounds();
+    let Some(mut z) = walk.begin(low + STILL.ln()) else { return Ok(None) };
+    let size = z.len();
+    z[size - 1] = f64::MIN_POSITIVE.sqrt().ln();
+    walk.equations().evaluate(&z);
+    Ok(Some(walk))
 }

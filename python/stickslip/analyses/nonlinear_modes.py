@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from stickslip import _core
+from stickslip.analyses.mode_bounds import mode_bounds
 from stickslip.analyses.run import Progress, Run, refusals
 from stickslip.analyses.texts import told
 from stickslip.errors import ModelError
@@ -68,25 +69,30 @@ def nonlinear_modes(
     """
     model = _of_diameter(model, settings.nodal_diameter)
     _check_method(model, settings.method)
-    amplitude = settings.amplitude
+    amplitude, bounded = settings.amplitude, settings.bounded
+    if bounded and settings.method == "quasi-static":
+        raise ModelError('residual = "bounds": not of a quasi-static mode; give a residual in N')
     kept = ModeSettings.of(
         **{
-            **settings.suited(model).part(BackboneSettings),
+            **settings.nominal(model).suited(model).part(BackboneSettings),
             "amplitudes": tuple(map(float, np.atleast_1d(amplitude))),
             "whole": isinstance(amplitude, tuple),
+            "bounds": bounded,
         }
     )
     with Run("nonlinear mode", progress, model) as run:
         with refusals(model):
-            solution = _core.nonlinear_mode(model.problem, kept, run)
-        arrays = ModeArrays.of(solution)
+            solution = _core.nonlinear_mode(model.problem, kept, None, run)
+            bounds = mode_bounds(model, kept, solution, run)
+        arrays = ModeArrays.of(solution, omega_bounds=bounds.omega, damping_bounds=bounds.damping)
         result = NonlinearModes.of(
             solution,
             model=model,
             dofs=model.structure.dofs,
             settings=kept,
             arrays=arrays,
-            diagnostics=_assumptions(kept, arrays, solution),
+            interrupted=solution.interrupted or bounds.interrupted,
+            diagnostics=(*_assumptions(kept, arrays, solution), *bounds.told),
         )
         return run.ended(result, f"{result.omega.size} amplitudes")
 

@@ -151,8 +151,13 @@ TEXTS = {
     "static-traction/peaks": "A contact that never slips was taken to hold residual={residual!r}.",
     "bounds": "The vibration depends on residual tractions at {points} of {_known} points. The "
     "bounds are inner ones: every amplitude in them is attained, and others could lie outside.",
+    "bounds/modes": "Frequency or damping depend on residual tractions at {points} of {_known} "
+    "amplitudes. The bounds are inner ones, of {corners} places in what Coulomb allows: others "
+    "could lie outside.",
     "bounds-not-found": "At {points} points an orbit with the least or the largest amplitude was "
     "not found; forced_response has bounds there.",
+    "bounds-not-found/modes": "In {places} of the {corners} places the mode was not found at all "
+    "amplitudes: the bounds there are of the others.",
     "bounds/unique": "All residual tractions go with one vibration: the laws are monotone and the "
     "structure is damped, so that the bounds coincide.",
     "start-of-march": "The march through a damper of several points begins without slip, so that "

@@ -13,7 +13,8 @@ from stickslip.plot import style
 from stickslip.plot.arguments import checked_labels, several
 from stickslip.plot.figure import keywords
 from stickslip.plot.options import BackboneOptions, DampingOptions
-from stickslip.plot.style import Colour
+from stickslip.plot.style import Colour, Looks
+from stickslip.results.arrays import Float
 from stickslip.results.nonlinear_modes import NonlinearModes
 
 _AMPLITUDE = r"modal amplitude [m kg$^{1/2}$]"
@@ -48,6 +49,7 @@ def backbone(
     for one, name, colour in zip(branches, names, style.colours(len(branches)), strict=True):
         marker = "" if one.settings.whole else "o"
         ax.plot(one.amplitude, omega.factor * one.omega, color=colour, label=name, marker=marker)
+        _band(ax, one, omega.factor * one.omega_bounds, colour)
         if below is not None:
             _damping(below, one, colour, name)
     ax.set(xscale="log", ylabel=omega.label)
@@ -102,6 +104,13 @@ def _damping(ax: Axes, one: NonlinearModes, colour: Colour, name: str) -> None:
     marker = "" if one.settings.whole else "o"
     ax.plot(one.amplitude, one.damping_ratio, color=colour, marker=marker, label=name)
     ax.plot(one.amplitude, one.viscous_ratio, color=colour, ls=":")
+    _band(ax, one, one.damping_bounds, colour)
+
+
+def _band(ax: Axes, one: NonlinearModes, bounds: Float, colour: Colour) -> None:
+    if np.isfinite(bounds).any():
+        looks: Looks = {"color": colour, "alpha": 0.15, "lw": 0.0}
+        ax.fill_between(one.amplitude, *bounds.T, **looks, label="all residual tractions")
 
 
 def _shapes(ax: Axes, mode: NonlinearModes) -> None:

@@ -8,7 +8,12 @@ from typing import ClassVar
 import numpy as np
 
 from stickslip.results.arrays import Float, Int, PeriodicArrays
+from stickslip.results.dataset import Stored
 from stickslip.results.fields import column
+
+
+def _unbounded(file: Stored) -> Float:
+    return np.full((*file["omega"].values.shape, 2), np.nan)
 
 
 class ModeArrays(PeriodicArrays):
@@ -52,5 +57,17 @@ class ModeArrays(PeriodicArrays):
         "*", "rad/s", "natural frequency of the stuck structure that it meets"
     )
     resonance_share: Float = column("*", "1", "modal amplitude of that harmonic over the amplitude")
+    omega_bounds: Float = column(
+        "* bound",
+        "rad/s",
+        "least and largest angular frequency over residual tractions",
+        absent=_unbounded,
+    )
+    damping_bounds: Float = column(
+        "* bound",
+        "1",
+        "least and largest damping ratio over residual tractions",
+        absent=_unbounded,
+    )
     turns: Float = column("turn", "m kg^(1/2)", "amplitudes at which the branch turns")
     linear: Float = column("mode_entry", "1", "natural frequency and damping ratio at rest")

@@ -68,6 +68,8 @@ class NonlinearModes(PeriodicMotions):
     turns = Shown[Float]()
     force_level = Shown[Float]()
     relative_error = Shown[Float]()
+    omega_bounds = Shown[Float]()
+    damping_bounds = Shown[Float]()
 
     plot = Drawn("backbone")
 

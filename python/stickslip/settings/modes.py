@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, Strict
 
-from stickslip.settings.balance import HarmonicSettings
+from stickslip.settings.balance import BoundsKey, HarmonicSettings
 from stickslip.settings.entries import ONE_OF, Count, Flag, Index, Whole
 from stickslip.settings.ranges import Amplitudes
 
@@ -36,7 +36,7 @@ class BackboneSettings(HarmonicSettings):
     )
 
 
-class ModeKeys(BackboneSettings):
+class ModeKeys(BoundsKey, BackboneSettings):
     """Which nonlinear mode, at which amplitudes, and how."""
 
     amplitude: Amplitudes = Field(
@@ -54,3 +54,6 @@ class ModeSettings(BackboneSettings):
         default=(), description="Amplitudes that were asked for, or the two ends of their range."
     )
     whole: Flag = Field(default=False, description="Whether the range between two is wanted.")
+    bounds: Flag = Field(
+        default=False, description="Whether the residual tractions were varied, for bounds."
+    )
