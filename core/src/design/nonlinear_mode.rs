@@ -39,15 +39,15 @@ pub fn nonlinear_mode(
     } else {
         held_at_rest(model, settings, residuals.clone(), progress)?
     };
-    let residual = |(law, given): (&Box<dyn ContactLaw>, &Residual)| {
-        let held = made.is_some() && keeps_history(law.as_ref());
+    let residual = |(law, given): (&dyn ContactLaw, &Residual)| {
+        let held = made.is_some() && keeps_history(law);
         if held {
             Residual::FromRest
         } else {
             *given
         }
     };
-    let residuals = model.laws().iter().zip(&residuals).map(residual).collect();
+    let residuals = model.laws().iter().map(AsRef::as_ref).zip(&residuals).map(residual).collect();
     let mut walk = Walk::new(made.as_ref().unwrap_or(model), settings, residuals, progress)?;
     let (low, _) = walk.bounds();
     let end = match walk.begin(low) {
