@@ -4,34 +4,10 @@ import numpy as np
 import pytest
 
 import stickslip as ss
+from joints import wedge
 
 ORDERS, SAMPLES = 3, 512
 STATIC, STIFFNESS, FRICTION = 240.0, 3e5, 0.6
-
-
-def wedge():
-    """Return two blades with a wedge between them, pressed on by a static load."""
-    stiffness = np.zeros((6, 6))
-    for place, (own, other) in enumerate([(1e6, -9e5), (4e5, -3e5), (1e6, -1e6)]):
-        both = slice(2 * place, 2 * place + 2)
-        stiffness[both, both] = [[own, other], [other, own]]
-    structure = ss.Structure(
-        mass=np.diag([10.0, 10.0, 10.0, 10.0, 0.1, 0.1]),
-        stiffness=stiffness,
-        damping=np.diag([20.0, 20.0, 20.0, 20.0, 0.0, 0.0]),
-        dofs=["x1", "y1", "x2", "y2", "xD", "yD"],
-    )
-    cos, sin = np.cos(np.deg2rad(40.0)), np.sin(np.deg2rad(40.0))
-    keys = {
-        "friction": FRICTION,
-        "tangential_stiffness": STIFFNESS,
-        "normal_stiffness": STIFFNESS,
-    }
-    contacts = [
-        ss.Coulomb(["xD", "yD"], other=["x1", "y1"], normal=[-sin, cos], **keys),
-        ss.Coulomb(["xD", "yD"], other=["x2", "y2"], normal=[sin, cos], **keys),
-    ]
-    return ss.Model(structure, contacts, [ss.Force("yD", STATIC, harmonic=0)])
 
 
 def marched(displacement, rest):

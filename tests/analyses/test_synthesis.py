@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 import stickslip as ss
+from joints import chain
 
 
-def chain(seed):
+def random_chain(seed):
     """Return a random chain on Jenkins elements, and the names of its DOFs."""
     rng = np.random.default_rng([5, seed])
     size = int(rng.integers(1, 5))
@@ -28,25 +29,11 @@ def chain(seed):
     return ss.Model(structure, contacts), dofs
 
 
-def three_masses(force=None):
-    structure = ss.Structure(
-        mass=np.diag([1.0, 0.5, 0.3]),
-        stiffness=[[3e4, -1e4, 0.0], [-1e4, 2.5e4, -5e3], [0.0, -5e3, 2e4]],
-        damping=ss.ModalDamping(0.003),
-        dofs=["x", "y", "z"],
-    )
-    contacts = [
-        ss.Jenkins("x", stiffness=4e3, slip_force=1.0),
-        ss.Jenkins("y", "z", stiffness=2e3, slip_force=0.7),
-    ]
-    return ss.Model(structure, contacts=contacts, forces=[] if force is None else [force])
-
-
 @pytest.mark.parametrize("size", [0.05, 0.5, 2.0])
 def test_synthesised_peaks_are_those_of_direct_computation(size):
     force = ss.Force("x", size)
-    mode = ss.nonlinear_modes(three_masses(), mode=0, amplitude=(1e-6, 3e-2))
-    direct = ss.forced_response(three_masses(force), omega=(120.0, 190.0), tolerance=1e-4).peak("y")
+    mode = ss.nonlinear_modes(chain(), mode=0, amplitude=(1e-6, 3e-2))
+    direct = ss.forced_response(chain(force), omega=(120.0, 190.0), tolerance=1e-4).peak("y")
     near = np.linspace(0.97, 1.03, 1201) * direct.omega
     response = mode.forced_response(force, near)
     heights = response.amplitude("y")
@@ -63,7 +50,7 @@ def test_synthesised_peaks_are_those_of_direct_computation(size):
 
 @pytest.mark.parametrize("seed", [0, 1, *range(3, 12)])
 def test_damper_curves_of_one_mode_are_right_or_say_that_they_are_not(seed):
-    model, dofs = chain(seed)
+    model, dofs = random_chain(seed)
     mode = ss.nonlinear_modes(model, amplitude=(1e-6, 0.3), harmonics=9)
     force, dof = ss.Force(dofs[-1], 1.0), dofs[seed % len(dofs)]
     factors = np.geomspace(0.02, 20.0, 5)
@@ -89,7 +76,7 @@ def test_damper_curves_of_one_mode_are_right_or_say_that_they_are_not(seed):
 
 @pytest.mark.parametrize("seed", [0, 1, 4, 5, 8, 14])
 def test_limit_cycles_of_one_mode_are_right_or_say_that_they_are_not(seed):
-    model, dofs = chain(seed)
+    model, dofs = random_chain(seed)
     mode = ss.nonlinear_modes(model, amplitude=(1e-6, 0.3), harmonics=9)
     rng = np.random.default_rng(seed)
     negative = np.diag(-rng.uniform(0.0, 2.0, len(dofs))) if seed % 2 else ss.Rayleigh(mass=-1.0)
@@ -110,7 +97,7 @@ def test_limit_cycles_of_one_mode_are_right_or_say_that_they_are_not(seed):
 
 
 def test_what_does_not_scale_is_refused():
-    model, dofs = chain(0)
+    model, dofs = random_chain(0)
     keys = {"amplitude": [1e-5, 1e-4], "harmonics": 3}
     force = ss.Force(dofs[0], 1.0)
     loaded = ss.Model(model.structure, model.contacts, [ss.Force(dofs[0], 2.0, harmonic=0)])
@@ -121,14 +108,14 @@ def test_what_does_not_scale_is_refused():
     with pytest.raises(ss.ModelError, match="harden"):
         mode.damper_curve(force, [1.0])
     assert np.isfinite(mode.peaks(force, [1e-4]).amplitude(dofs[0])).all()
-    turning, dofs = chain(2)
+    turning, dofs = random_chain(2)
     mode = ss.nonlinear_modes(turning, amplitude=(1e-6, 0.3), harmonics=9)
     with pytest.raises(ss.ModelError, match=r"does not turn; it has .* 2 turns"):
         mode.peaks(ss.Force(dofs[0], 1.0), [1.0])
 
 
 def test_levels_are_positive():
-    model, dofs = chain(0)
+    model, dofs = random_chain(0)
     mode = ss.nonlinear_modes(model, amplitude=[1e-5, 1e-4], harmonics=3)
     force = ss.Force(dofs[0], 1.0)
     with pytest.raises(ss.ModelError, match="level"):
