@@ -152,7 +152,7 @@ class _Wave(NamedTuple):
 
     def with_amplitudes(self, other: _Wave) -> _Wave:
         """Return the wave at the amplitudes of both."""
-        order = np.argsort(np.concatenate([self.amplitude, other.amplitude]))
+        _, order = np.unique(np.concatenate([self.amplitude, other.amplitude]), return_index=True)
         return _Wave(*(np.concatenate(pair)[order] for pair in zip(self, other, strict=True)))
 
     def over_amplitude(self, values: NDArray[np.float64]) -> PchipInterpolator:
@@ -259,7 +259,7 @@ class _Follower:
         """Return the limit cycles by rising amplitude, from the wave at amplitudes around them."""
         for _ in range(_ROUNDS):
             guesses = row.undamped()
-            after = np.searchsorted(row.amplitude, guesses)
+            after = np.maximum(np.searchsorted(row.amplitude, guesses), 1)
             low, high = row.amplitude[after - 1], row.amplitude[after]
             wide = high > (1.0 + _CLOSE) ** 2 * low
             if not wide.any():
