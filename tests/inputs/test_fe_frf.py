@@ -100,5 +100,18 @@ def test_bad_functions_are_refused(tmp_path):
     curve = ss.forced_response(ss.reference.snecma_beam(), omega=[150.0, 160.0], harmonics=1)
     with pytest.raises(ModelError, match="no force at 'damper'"):
         ss.Frf.of(curve, "tip", "damper")
+    spring = ss.Cubic("x", stiffness=5e7)
+    single = ss.Structure([[1.0]], [[1e4]], [[1.0]], ["x"])
+    folded = ss.forced_response(ss.Model(single, [spring], [ss.Force("x", 2.0)]), (80.0, 160.0))
+    with pytest.raises(ModelError, match="the curve folds 2 times, so that it has several values"):
+        ss.Frf.of(folded, "x", "x")
     with pytest.raises(ModelError, match="no such file"):
         ss.read_frf(tmp_path / "missing.uff")
+
+
+def test_what_tells_functions_apart_is_one_line(tmp_path):
+    about = "preload = 1 N\nlevel = 2" + 99 * "x"
+    given = ss.Frf([1.0, 2.0], [1.0, 2.0], "1.1", "1.1", about=about)
+    ss.write_frf(tmp_path / "a.uff", [given, ss.Frf([1.0, 2.0], [1.0, 2.0], "1.1", "1.1")])
+    named, plain = ss.read_frf(tmp_path / "a.uff")
+    assert (named.about, plain.about) == (f"preload = 1 N level = 2{57 * 'x'}", "")

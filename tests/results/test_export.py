@@ -286,6 +286,30 @@ def test_a_universal_file_has_the_receptances(frf, tmp_path):
         np.testing.assert_allclose(one.values, mine.values, rtol=1e-10)
 
 
+def test_a_universal_file_has_the_functions_of_a_sweep(tmp_path):
+    pyuff = pytest.importorskip("pyuff")
+
+    def curve(model):
+        return ss.forced_response(model, GRID, 3, observe=["damper", "tip"])
+
+    swept = ss.sweep(BEAM, curve, slip_force=["100 N", "246 N"])
+    swept.export(tmp_path / "a.uff")
+    functions = ss.read_frf(tmp_path / "a.uff")
+    pairs = [(about, dof) for about in swept.labels for dof in ("damper", "tip")]
+    assert [(one.about, one.dof) for one in functions] == pairs
+    assert swept.labels[0] == "slip force = 100 N"
+    for number, one in enumerate(functions):
+        mine = ss.Frf.of(swept.results[number // 2], one.dof, "tip")
+        np.testing.assert_allclose(one.values, mine.values, rtol=1e-10)
+    assert not np.allclose(functions[1].values, functions[3].values, rtol=1e-3)
+    sets = pyuff.UFF(str(tmp_path / "a.uff")).read_sets()
+    assert [one["id2"].strip() for one in sets] == [about for about, _ in pairs]
+
+    orbits = ss.sweep(BEAM, lambda model: ss.exact_response(model, GRID[:2]), level=[0.5, 1.0])
+    with pytest.raises(ss.ModelError, match="the result is an exact response; export it"):
+        orbits.export(tmp_path / "b.uff")
+
+
 def test_texts_are_no_formulas(tmp_path):
     openpyxl = pytest.importorskip("openpyxl")
     structure = ss.Structure([[2.0]], [[8.0]], [[0.4]], dofs=["=1+1"])

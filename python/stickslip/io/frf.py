@@ -37,8 +37,10 @@ _END, _TEXT, _HEAD = b"    -1", b"    58", 13
 """What ends and begins a dataset, what text says of itself, and its lines before the numbers."""
 _NUMBERS = re.compile(rb"[-+.0-9eEdD \t]*")
 _NODE_DOF = re.compile(r"([1-9]\d{0,9})\.([1-6])(-?)")
-_LONGEST = 10
-"""Characters that the format leaves for the name of an entity."""
+_LONGEST, _LINE = 10, 80
+"""Characters that the format leaves for the name of an entity, and for a line of the head."""
+_NONE = "NONE"
+"""What stands for no text."""
 
 
 class Response(Protocol):
@@ -50,6 +52,8 @@ class Response(Protocol):
     def omega(self) -> NDArray[np.float64]: ...  # noqa: D102
     @property
     def converged(self) -> NDArray[np.bool_]: ...  # noqa: D102
+    @property
+    def folds(self) -> NDArray[np.int64]: ...  # noqa: D102
     def coefficients(self, dof: str) -> NDArray[np.complex128]: ...  # noqa: D102
 
 
@@ -70,6 +74,9 @@ class Frf:
         Where the force is.
     quantity : {"displacement", "velocity", "acceleration"}, optional
         The motion.
+    about : str, optional
+        What tells it from other functions of the same two, "preload = 120 N": of a file the second
+        line of the head, of which the format holds 80 characters.
 
     Raises
     ------
@@ -83,6 +90,7 @@ class Frf:
     dof: str
     reference: str
     quantity: Quantity = "displacement"
+    about: str = ""
 
     def __init__(
         self,
@@ -91,6 +99,7 @@ class Frf:
         dof: str,
         reference: str,
         quantity: Quantity = "displacement",
+        about: str = "",
     ) -> None:
         frequency, motion = np.array(omega, np.float64), np.array(values, np.complex128)
         if frequency.ndim != 1 or frequency.shape != motion.shape or frequency.size < 2:
@@ -109,24 +118,31 @@ class Frf:
             dof=text(dof, "frf: dof"),
             reference=text(reference, "frf: reference"),
             quantity=choice(quantity, "frf: quantity", _DERIVATIVES),
+            about=about and text(about, "frf: about"),
         )
 
     @classmethod
-    def of(cls, response: Response, dof: str, reference: str) -> Frf:
+    def of(cls, response: Response, dof: str, reference: str, about: str = "") -> Frf:
         """Return the fundamental of a computed response per force, of the points that were solved.
 
         `dof` is an observed degree of freedom, `reference` one with a force of the first harmonic;
         other forces stay in proportion to it. A structure with friction has another displacement
-        per force at every level.
+        per force at every level. A curve that folds is refused: it has several values at a
+        frequency.
         """
         forces = [f for f in response.model.forces if f.harmonic == 1 and f.dof == reference]
         amplitude = sum(force.coefficient for force in forces)
         if not amplitude:
             raise ModelError(f"frf: no force at {brief(reference)}; name a dof with a force")
+        if response.folds.size:
+            raise ModelError(
+                f"frf: the curve folds {response.folds.size} times, so that it has several values "
+                "at a frequency; give the frequencies as a list"
+            )
         solved = response.converged
         order = np.argsort(response.omega[solved])
         motion = response.coefficients(dof)[solved, 1] / amplitude
-        return cls(response.omega[solved][order], motion[order], dof, reference)
+        return cls(response.omega[solved][order], motion[order], dof, reference, about=about)
 
     def receptance(self) -> NDArray[np.complex128]:
         """Return displacement per force [m/N], shape (n,); of derivatives nan at 0 rad/s."""
@@ -202,7 +218,8 @@ def _frf(dataset: Mapping[str, object]) -> Frf:
     if quantity is None:
         raise ValueError("neither displacement, nor velocity, nor acceleration")
     dof, reference = (_dof(dataset, side) for side in ("rsp", "ref"))
-    return Frf(2.0 * np.pi * frequency, values, dof, reference, quantity)  # type: ignore[arg-type]
+    about = str(dataset["id2"]).strip().removeprefix(_NONE)
+    return Frf(2.0 * np.pi * frequency, values, dof, reference, quantity, about)  # type: ignore[arg-type]
 
 
 def _dof(dataset: Mapping[str, object], side: str) -> str:
@@ -221,7 +238,7 @@ def _dataset(pyuff: ModuleType, frf: Frf) -> object:
             raise ModelError(
                 f"frf: {brief(dof)} has {len(dof)} characters; the format holds {_LONGEST}"
             )
-        places[f"{side}_ent_name"] = "NONE" if match else dof
+        places[f"{side}_ent_name"] = _NONE if match else dof
         places[f"{side}_node"] = int(match[1]) if match else 0
         places[f"{side}_dir"] = int(match[3] + match[2]) if match else 0
     return pyuff.prepare_58(
@@ -230,6 +247,7 @@ def _dataset(pyuff: ModuleType, frf: Frf) -> object:
         data=np.array(frf.values),
         x=frf.omega / (2.0 * np.pi),
         id1=f"{frf.quantity} of {frf.dof} per force at {frf.reference}",
+        id2=(" ".join(frf.about.split()) or _NONE)[:_LINE],
         abscissa_spacing=0,
         abscissa_spec_data_type=_FREQUENCY,
         ordinate_spec_data_type=kind,

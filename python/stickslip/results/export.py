@@ -191,11 +191,27 @@ def _plain(value: Any) -> Any:
 
 
 def _universal(result: Any, file: Path, _: str | None) -> bytes:
+    """Write a function per degree of freedom; of a sweep per value, which the head names."""
+    swept = zip(result.results, result.labels, strict=True) if result.kind == "sweep" else None
+    return universal_file(
+        file,
+        [
+            Frf.of(one, dof, reference, about)
+            for one, about in swept or [(result, "")]
+            for reference in [_reference(one, file)]
+            for dof in one.dofs
+        ],
+    )
+
+
+def _reference(result: Any, file: Path) -> str:
+    """Return where the force is of which a result has the response functions."""
     if result.kind != "forced_response":
         kind = result.kind.replace("_", " ")
+        article = "an" if kind[0] in "aeiou" else "a"
         raise ModelError(
-            f"{file}: a Universal File holds response functions, the result is a {kind}; export it "
-            "as .csv"
+            f"{file}: a Universal File holds response functions, the result is {article} {kind}; "
+            "export it as .csv"
         )
     forces = list(dict.fromkeys(one.dof for one in result.model.forces if one.harmonic == 1))
     if len(forces) != 1:
@@ -203,7 +219,7 @@ def _universal(result: Any, file: Path, _: str | None) -> bytes:
             f"{file}: {len(forces)} degrees of freedom have a force of the first harmonic; say in "
             "Python which one: ss.write_frf(file, ss.Frf.of(result, dof, reference))"
         )
-    return universal_file(file, [Frf.of(result, dof, forces[0]) for dof in result.dofs])
+    return forces[0]
 
 
 class _Format(NamedTuple):
