@@ -364,6 +364,7 @@ def sweep(
     gap: ArrayLike | None = None,
     tangential_stiffness: ArrayLike | None = None,
     normal_stiffness: ArrayLike | None = None,
+    normal_load: ArrayLike | None = None,
     speed: ArrayLike | None = None,
     progress: Progress = None,
 ) -> Sweep: ...

@@ -226,3 +226,49 @@ def test_reports_draw_the_family(swept, tmp_path):
     (figure, *_) = Page(tmp_path / "a.html").figures
     names = {trace.get("name") for trace in figure["data"]}
     assert {"slip force = 50 N", "slip force = 200 N", "slip force = 400 N"} <= names
+
+
+def test_slip_forces_that_are_friction_times_load_follow_the_load(tmp_path):
+    text = STUDY.replace('slip_force = "3 N"', 'friction = "30 %"\nnormal_load = "10 N"')
+    (loads,) = Study.parse(text + '[sweep]\nnormal_load = ["5 N", "0.02 kN"]\n').run()
+    assert (loads.parameter, loads.unit, loads.written) == ("normal_load", "N", ("5 N", "20 N"))
+    assert [one.model.contacts[0].slip_force for one in loads.results] == [1.5, 6.0]
+    (forces,) = Study.parse(STUDY + "[sweep]\nslip_force = [1.5, 6.0]\n").run()
+    for one, other in zip(loads.results, forces.results, strict=True):
+        np.testing.assert_array_equal(one.amplitude("tip"), other.amplitude("tip"))
+    # A file keeps what the slip force was made of.
+    loads.save(tmp_path / "a.nc")
+    again = ss.load(tmp_path / "a.nc")
+    assert again.settings.variation == loads.settings.variation
+    contact = again.results[1].model.contacts[0]
+    assert contact.variable() == {
+        "stiffness": (5e5,),
+        "slip_force": (6.0,),
+        "friction": (0.3,),
+        "normal_load": (20.0,),
+    }
+    assert contact.adjusted("stiffness", [1e5]).slip_force == 6.0
+    assert contact.adjusted("friction", [0.5]).slip_force == 10.0
+    assert "friction" not in contact.adjusted("slip_force", [7.0]).variable()
+
+
+def test_friction_of_all_laws_is_swept_and_factors_multiply_loads():
+    made = [
+        ss.Jenkins(at, stiffness=1e4, friction=mu, normal_load=10.0, name=at)
+        for at, mu in (("damper", 0.2), ("tip", 0.4))
+    ]
+    beam = snecma_beam()
+    model = beam.replaced(contacts=made)
+
+    def limits(swept):
+        return [[one.slip_force for one in member.model.contacts] for member in swept.results]
+
+    found = limits(ss.sweep(model, curve, normal_load=[0.5, 2.0], common="factor"))
+    np.testing.assert_allclose(found, [[1.0, 2.0], [4.0, 8.0]])
+    np.testing.assert_allclose(limits(ss.sweep(model, curve, friction=[0.5])), [[5.0, 5.0]])
+    only = ss.sweep(model, curve, normal_load=[20.0], contacts="tip")
+    np.testing.assert_allclose(limits(only), [[2.0, 8.0]])
+    with pytest.raises(ss.ModelError, match="none of the model has a friction; they have 'stiff"):
+        ss.damper_curve(model, friction=[0.5, 0.6], dof="tip")
+    with pytest.raises(ss.ModelError, match="none of the model has a normal_load; they have 'stiff"):
+        ss.sweep(beam, curve, normal_load=[1.0])

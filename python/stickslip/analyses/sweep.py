@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from operator import methodcaller
 from typing import TypeAlias
 
 import numpy as np
@@ -101,7 +102,7 @@ def _family(
         needed = "a function of the speed" if isinstance(models, Model) else "a Model"
         raise ModelError(f"models: {brief(models)} along {parameter}; give {needed}")
     if isinstance(models, Model):
-        variation = variation_of(models, parameter, keys)
+        variation = variation_of(models, parameter, keys, methodcaller("variable"))
         base = models
         settings = SweepSettings.of(
             parameter=parameter, unit=variation.unit, values=values, variation=variation

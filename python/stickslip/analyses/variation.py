@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping
+from operator import methodcaller
+from typing import TypeAlias
 
 import numpy as np
 
@@ -18,7 +20,7 @@ from stickslip.settings.variation import (
     Common,
     ContactKeys,
     Contacts,
-    Parameter,
+    Swept,
     Variation,
     located,
 )
@@ -27,14 +29,25 @@ MARGIN = 0.05
 """Share by which the range around a resonance reaches beyond its free and its stuck frequency."""
 
 
-def variation_of(model: Model, parameter: Parameter, keys: ContactKeys) -> Variation:
+Known: TypeAlias = Callable[[Contact], Mapping[str, tuple[float, ...]]]
+"""The parameters of a contact that can be varied: what is `adjustable`, or `variable` in sweeps."""
+_ADJUSTABLE: Known = methodcaller("adjustable")
+
+
+def variation_of(
+    model: Model, parameter: Swept, keys: ContactKeys, known: Known = _ADJUSTABLE
+) -> Variation:
     """Return the variation of a parameter of contacts, or of points of them."""
-    chosen = chosen_contacts(model, parameter, keys.contacts, keys.common)
+    chosen = chosen_contacts(model, parameter, keys.contacts, keys.common, known)
     return Variation.of(parameter=parameter, contacts=chosen, common=keys.common)
 
 
 def chosen_contacts(
-    model: Model, parameter: Parameter, contacts: Contacts | None, common: Common
+    model: Model,
+    parameter: Swept,
+    contacts: Contacts | None,
+    common: Common,
+    known: Known = _ADJUSTABLE,
 ) -> tuple[Chosen, ...]:
     """Return the contacts whose parameter is varied, by name, or points of them; None are all."""
     if parameter == "level":
@@ -42,7 +55,7 @@ def chosen_contacts(
             raise ModelError("contacts: a level is no parameter of contacts; leave them out")
         return ()
     if contacts is None:
-        return _all_contacts(parameter, model, common)
+        return _all_contacts(parameter, model, common, known)
     given: list[PointRef]
     if isinstance(contacts, str | int) or _is_point(contacts):
         given = [contacts]  # type: ignore[list-item]
@@ -52,7 +65,7 @@ def chosen_contacts(
         raise ModelError(f"contacts: {brief(contacts)} is not a list of contacts")
     if not given:
         raise ModelError("contacts: empty; name at least one, or leave it out for all")
-    chosen = [one for ref in given for one in _chosen(ref, parameter, model, common)]
+    chosen = [one for ref in given for one in _chosen(ref, parameter, model, common, known)]
     if len(set(chosen)) < len(chosen):
         names = Variation(parameter=parameter, contacts=tuple(chosen)).names
         raise ModelError(f"contacts: one is given more than once in {listed(names)}")
@@ -64,49 +77,53 @@ def _is_point(contacts: object) -> bool:
     return isinstance(contacts, tuple) and [type(part) for part in contacts] == [str, int]
 
 
-def _all_contacts(parameter: Parameter, model: Model, common: Common) -> tuple[Chosen, ...]:
+def _all_contacts(
+    parameter: Swept, model: Model, common: Common, known: Known
+) -> tuple[Chosen, ...]:
     """Return the contacts that have the parameter; of slip forces those that are finite, if any."""
-    able = [one for one in model.contacts if parameter in one.adjustable()]
+    able = [one for one in model.contacts if parameter in known(one)]
     if not able:
-        raise ModelError(f"contacts: none of the model has a {parameter}; add one to the model")
+        names = dict.fromkeys(name for one in model.contacts for name in known(one))
+        has = f"they have {listed(list(names))}" if names else "add one to the model"
+        raise ModelError(f"contacts: none of the model has a {parameter}; {has}")
     taking = [one for one in able if common == "factor" or parameter not in one.factors]
     if not taking:
         raise _without_value(str(able[0].name), parameter)
-    slips = [one for one in taking if min(one.adjustable()[parameter]) < np.inf]
+    slips = [one for one in taking if min(known(one)[parameter]) < np.inf]
     chosen = slips if parameter == "slip_force" and slips else taking
-    return tuple(ref for one in chosen for ref in _points(one, parameter))
+    return tuple(ref for one in chosen for ref in _points(one, parameter, known))
 
 
 def _chosen(
-    ref: PointRef, parameter: Parameter, model: Model, common: Common
+    ref: PointRef, parameter: Swept, model: Model, common: Common, known: Known
 ) -> tuple[Chosen, ...]:
     """Return the contact that is meant, or the points of it that have a value each."""
     position, point = model.slider(ref) if isinstance(ref, tuple | list) else (ref, None)
     contact = model.contacts[model.contact_index(position)]
-    known, name = contact.adjustable(), str(contact.name)
-    if parameter not in known:
-        raise ModelError(f"contact {name!r}: {unknown('parameter', parameter, known)}")
+    own, name = known(contact), str(contact.name)
+    if parameter not in own:
+        raise ModelError(f"contact {name!r}: {unknown('parameter', parameter, own)}")
     if parameter in contact.factors and common == "value":
         raise _without_value(name, parameter)
     if point is None:
-        return _points(contact, parameter)
-    if len(known[parameter]) == contact.sliders:
-        return (name,) if len(known[parameter]) == 1 else ((name, point),)
+        return _points(contact, parameter, known)
+    if len(own[parameter]) == contact.sliders:
+        return (name,) if len(own[parameter]) == 1 else ((name, point),)
     raise ModelError(
         f"contact {name!r}: its {parameter} is that of the whole contact; name it without a point"
     )
 
 
-def _points(contact: Contact, parameter: Parameter) -> tuple[Chosen, ...]:
+def _points(contact: Contact, parameter: Swept, known: Known) -> tuple[Chosen, ...]:
     """Return a contact, or its points if each has a value; those that are finite, if any."""
-    own, name = contact.adjustable()[parameter], str(contact.name)
+    own, name = known(contact)[parameter], str(contact.name)
     if len(own) == 1:
         return (name,)
     finite = [point for point, value in enumerate(own) if np.isfinite(value)]
     return tuple((name, point) for point in finite or range(len(own)))
 
 
-def _without_value(name: str, parameter: Parameter) -> ModelError:
+def _without_value(name: str, parameter: Swept) -> ModelError:
     return ModelError(
         f"contact {name!r}: its {parameter} is that of several parts, which takes no value; "
         'common="factor" multiplies it'

@@ -19,6 +19,7 @@ _UNITS = {
     "slip_forces": "N",
     "friction": "",
     "preload": "N",
+    "normal_load": "N",
     "stiffness": "N/m",
     "tangential_stiffness": "N/m",
     "normal_stiffness": "N/m",

@@ -162,8 +162,12 @@ class Contact(ABC):
         """
         return {name: (value,) for name, value in self.parameters().items()}
 
+    def variable(self) -> dict[str, tuple[float, ...]]:
+        """Return what a sweep can vary: what is `adjustable`, and that of which it was made."""
+        return self.adjustable()
+
     def adjusted(self, parameter: str, values: Sequence[float]) -> Self:
-        """Return the contact with other values, as many as `adjustable` has, of a parameter."""
+        """Return the contact with other values, as many as `variable` has, of a parameter."""
         (value,) = values
         return self._with(parameter, value)
 
@@ -237,9 +241,15 @@ class Contact(ABC):
         cls, dofs: tuple[str | None, ...], parameters: Mapping[str, object], name: str | None
     ) -> Self:
         """Build the contact from what `dofs`, the parameters of `to_spec` and `name` hold."""
-        require_keys(parameters, f"{cls.law} contact", cls.keys, cls.keys, "parameter")
+        keys = cls._keys_of(parameters)
+        require_keys(parameters, f"{cls.law} contact", keys, keys, "parameter")
         given = {key: _unlimited(value) for key, value in parameters.items()}
         return cls(*cls._placed(dofs), **given, name=name)
+
+    @classmethod
+    def _keys_of(cls, parameters: Mapping[str, object]) -> tuple[str, ...]:
+        """Return the names that the parameters must have."""
+        return cls.keys
 
     @classmethod
     def _placed(cls, dofs: tuple[str | None, ...]) -> tuple[Any, ...]:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import InitVar, dataclass, field
-from typing import Any, ClassVar, cast
+from typing import Any, ClassVar, Self, cast
 
 import numpy as np
 
@@ -14,6 +14,9 @@ from stickslip.errors import ModelError
 from stickslip.model.contact import Sliders, real_numbers
 from stickslip.model.ends import TwoEnds
 from stickslip.units import physical_number
+
+_FACTORS = ("friction", "normal_load")
+"""What the slip force of a Jenkins element is the product of."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +59,8 @@ class Jenkins(_Elements):
     slip_force : float
         Force F_d at which it slips [N]. Zero is no friction, infinity never slips.
     friction, normal_load : float, optional
-        Instead: coefficient of friction and normal load [N], whose product the slip force is.
+        Instead: coefficient of friction and normal load [N], whose product the slip force is. A
+        sweep can then vary either.
     name : str, optional
         By which results and settings refer to it.
 
@@ -78,12 +82,17 @@ class Jenkins(_Elements):
     slip_force: float = field(kw_only=True, default=cast("float", None))
     friction: InitVar[float | None] = field(kw_only=True, default=None)
     normal_load: InitVar[float | None] = field(kw_only=True, default=None)
+    factors_of_slip: tuple[float, float] | None = field(
+        init=False, repr=False, compare=False, default=None
+    )
+    """Coefficient of friction and normal load [N], of a slip force that was given as both."""
 
     def __post_init__(self, friction: float | None, normal_load: float | None) -> None:
         super().__post_init__()
         entry = f"jenkins contact at {brief(self.dof)}"
         if friction is not None or normal_load is not None or self.slip_force is None:
-            set_fields(self, slip_force=self._product(entry, friction, normal_load))
+            made = self._factors(entry, friction, normal_load)
+            set_fields(self, factors_of_slip=made, slip_force=made[0] * made[1])
         stiffness = physical_number(self.stiffness, "N/m", f"{entry}: stiffness", finite=False)
         slip_force = physical_number(self.slip_force, "N", f"{entry}: slip_force", finite=False)
         if stiffness < 0.0:
@@ -99,8 +108,10 @@ class Jenkins(_Elements):
             )
         set_fields(self, stiffness=stiffness, slip_force=slip_force)
 
-    def _product(self, entry: str, friction: float | None, normal_load: float | None) -> float:
-        """Return the slip force that friction and normal load make."""
+    def _factors(
+        self, entry: str, friction: float | None, normal_load: float | None
+    ) -> tuple[float, float]:
+        """Return friction and normal load, which make the slip force."""
         both = friction is not None and normal_load is not None
         if self.slip_force is not None or not both:
             given = "is missing" if self.slip_force is None else "is given beside them"
@@ -115,11 +126,33 @@ class Jenkins(_Elements):
             if number < 0.0:
                 raise ModelError(f"{entry}: {name} {number:g} is negative; give it from zero")
             values.append(number)
-        return values[0] * values[1]
+        return values[0], values[1]
 
     @property
     def _elements(self) -> Iterable[tuple[float, float]]:
         return [(self.stiffness, self.slip_force)]
+
+    def variable(self) -> dict[str, tuple[float, ...]]:
+        """Return stiffness, slip force, and friction and normal load if these were given."""
+        made = self.factors_of_slip or ()
+        return self.adjustable() | {
+            name: (value,) for name, value in zip(_FACTORS, made, strict=False)
+        }
+
+    def _values(self) -> dict[str, Any]:
+        made = self.factors_of_slip
+        if made is None:
+            return super()._values()
+        return {"stiffness": self.stiffness} | dict(zip(_FACTORS, made, strict=True))
+
+    def _with(self, key: str, value: object) -> Self:
+        own = super()._values() if key == "slip_force" else self._values()
+        return self.from_parameters(self.dofs, own | {key: value}, self.name)
+
+    @classmethod
+    def _keys_of(cls, parameters: Mapping[str, object]) -> tuple[str, ...]:
+        made = any(name in parameters for name in _FACTORS)
+        return ("stiffness", *_FACTORS) if made else cls.keys
 
 
 @dataclass(frozen=True)

@@ -219,7 +219,7 @@ def _reference(result: Any, file: Path) -> str:
             f"{file}: {len(forces)} degrees of freedom have a force of the first harmonic; say in "
             "Python which one: ss.write_frf(file, ss.Frf.of(result, dof, reference))"
         )
-    return forces[0]
+    return str(forces[0])
 
 
 class _Format(NamedTuple):

@@ -18,7 +18,7 @@ from stickslip.settings.ranges import (
     Stiffnesses,
 )
 from stickslip.settings.settings import Settings
-from stickslip.settings.variation import ContactKeys, Parameter, Variation, one_of
+from stickslip.settings.variation import ContactKeys, Parameter, Swept, Variation, one_of
 
 
 class ParameterKeys(Settings):
@@ -56,7 +56,7 @@ class ParameterKeys(Settings):
     )
 
     @property
-    def varied(self) -> Parameter:
+    def varied(self) -> Swept:
         """Which parameter is given."""
         return one_of(self, *self.parameters)  # type: ignore[arg-type]
 
@@ -71,8 +71,14 @@ class ParameterKeys(Settings):
 class SweepKeys(ParameterKeys, ContactKeys):
     """Along which parameter models are computed; give exactly one of the parameters."""
 
-    parameters = (*get_args(Parameter), "speed")
+    parameters = (*get_args(Swept), "speed")
 
+    normal_load: Preloads | None = Field(
+        default=None,
+        description="Instead: normal loads [N] of contacts whose slip force is friction times "
+        "load.",
+        examples=[["5 N", "10 N"]],
+    )
     speed: Speeds | None = Field(
         default=None,
         description="Instead: speeds of rotation [rad/s], of a model that depends on it.",

@@ -26,9 +26,11 @@ Parameter: TypeAlias = Literal[
     "tangential_stiffness",
     "normal_stiffness",
 ]
+Swept: TypeAlias = Literal[Parameter, "normal_load"]
+"""What a sweep varies: the normal load of a slip force that is friction times load, too."""
 COULOMB = frozenset({"friction", "preload", "gap", "tangential_stiffness", "normal_stiffness"})
 """Parameters of Coulomb contacts."""
-UNITS: Mapping[Parameter, str] = {
+UNITS: Mapping[Swept, str] = {
     "slip_force": "N",
     "stiffness": "N/m",
     "level": "1",
@@ -37,6 +39,7 @@ UNITS: Mapping[Parameter, str] = {
     "gap": "m",
     "tangential_stiffness": "N/m",
     "normal_stiffness": "N/m",
+    "normal_load": "N",
 }
 
 
@@ -90,7 +93,7 @@ class ContactKeys(ParameterMode):
 class Variation(ParameterMode):
     """What is varied."""
 
-    parameter: Annotated[Parameter, ONE_OF] = Field(
+    parameter: Annotated[Swept, ONE_OF] = Field(
         description="A parameter of contacts, or a factor on all forces."
     )
     contacts: Annotated[tuple[Chosen, ...], Strict(False)] = Field(
@@ -130,7 +133,7 @@ class Variation(ParameterMode):
             chosen = [ref for ref in self.contacts if _name(ref) == contact.name]
             if not chosen:
                 return contact
-            values = list(contact.adjustable()[self.parameter])
+            values = list(contact.variable()[self.parameter])
             for ref in chosen:
                 for point in range(len(values)) if isinstance(ref, str) else [ref[1]]:
                     values[point] = self._at(value, values[point])
@@ -145,7 +148,7 @@ class Variation(ParameterMode):
         return own if np.isinf(own) else value * own
 
 
-def one_of(keys: Settings, *names: Parameter) -> Parameter:
+def one_of(keys: Settings, *names: Swept) -> Swept:
     """Return which of some keys is given: exactly one of them."""
     given = [name for name in names if getattr(keys, name) is not None]
     if len(given) != 1:
