@@ -365,6 +365,7 @@ def sweep(
     tangential_stiffness: ArrayLike | None = None,
     normal_stiffness: ArrayLike | None = None,
     normal_load: ArrayLike | None = None,
+    engine_order: Sequence[int] | None = None,
     speed: ArrayLike | None = None,
     progress: Progress = None,
 ) -> Sweep: ...

@@ -93,3 +93,31 @@ def test_speed_changes_loads_and_stiffness():
         ss.spinning(blade, np.eye(2))
     with pytest.raises(ss.ModelError, match="give numbers above zero"):
         ss.speed_response(at, [0.0], engine_order=2, dof="x")
+
+
+def test_engine_orders_over_the_speed_of_the_rotor():
+    blade = ss.Structure([[1.0]], [[4e4]], [[4.0]], ["x"])
+    turning = ss.spinning(blade, [[0.5]])
+
+    def at(speed):
+        return ss.Model(turning(speed), forces=[ss.Force("x", 3.0)])
+
+    speeds = np.linspace(50.0, 120.0, 8)
+    found = [
+        ss.speed_response(at, speeds, engine_order=order, dof="x", harmonics=1) for order in (2, 3)
+    ]
+    diagram = ss.campbell(at, speed=speeds, orders=[2, 3])
+    ax = ss.plot.speed_response(found, diagram=diagram)
+    assert ax.get_xlabel() == "rotor speed [rpm]"
+    lines = {line.get_label(): line for line in ax.lines}
+    np.testing.assert_array_equal(lines["EO 3"].get_ydata(), found[1].amplitude)
+    np.testing.assert_allclose(lines["EO 3"].get_xdata(), speeds * 30.0 / np.pi)
+    # The orders meet K + W^2 / 2 = (E W)^2.
+    for order in (2, 3):
+        met = np.sqrt(4e4 / (order**2 - 0.5)) * 30.0 / np.pi
+        (drawn, _) = lines[f"resonances of EO {order}"].get_xdata()
+        np.testing.assert_allclose(drawn, met, rtol=5e-3)
+    (above,) = found[0].plot().child_axes
+    assert above.get_xlabel() == "frequency [Hz]"
+    with pytest.raises(ss.ModelError, match="it has the engine orders 2, 3, not 5"):
+        ss.speed_response(at, speeds, engine_order=5, dof="x").plot(diagram=diagram)

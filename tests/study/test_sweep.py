@@ -270,5 +270,99 @@ def test_friction_of_all_laws_is_swept_and_factors_multiply_loads():
     np.testing.assert_allclose(limits(only), [[2.0, 8.0]])
     with pytest.raises(ss.ModelError, match="none of the model has a friction; they have 'stiff"):
         ss.damper_curve(model, friction=[0.5, 0.6], dof="tip")
-    with pytest.raises(ss.ModelError, match="none of the model has a normal_load; they have 'stiff"):
+    with pytest.raises(
+        ss.ModelError, match="none of the model has a normal_load; they have 'stiff"
+    ):
         ss.sweep(beam, curve, normal_load=[1.0])
+
+
+ORDERED = """
+[disk]
+sectors = 12
+engine_order = 2
+
+[[coupling]]
+dof = "root"
+stiffness = 1e5
+
+[sweep]
+engine_order = [2, 3]
+
+[output]
+omega_unit = "rpm"
+"""
+
+
+def test_engine_orders_are_swept_and_drawn_over_the_speed_of_the_rotor(tmp_path):
+    (swept,) = Study.parse(STUDY + ORDERED).run()
+    assert swept.labels == ("engine order = 2", "engine order = 3")
+    tuned = Study.parse(STUDY + ORDERED).model
+    alone = ss.BladedDisk(
+        tuned.structure,
+        12,
+        couplings=tuned.couplings,
+        contacts=tuned.contacts,
+        forces=tuned.forces,
+        engine_order=3,
+    )
+    own = ss.forced_response(alone, [700.0, 800.0, 900.0], 5)
+    np.testing.assert_array_equal(swept.results[1].amplitude("tip"), own.amplitude("tip"))
+    assert swept.to_dataset()["amplitude"].sel(engine_order=3).sizes["omega"] == 3
+    swept.save(tmp_path / "a.nc")
+    assert ss.load(tmp_path / "a.nc").results[1].model.engine_order == 3
+
+    ax = swept.plot("tip", omega_unit="rpm")
+    curves = {line.get_label(): line for line in ax.lines if line.get_gid() == "response"}
+    for order, label in enumerate(swept.labels, 2):
+        np.testing.assert_allclose(
+            curves[label].get_xdata(), own.omega * 30.0 / np.pi / order, rtol=1e-12
+        )
+    assert ax.get_xlabel() == "rotor speed [rpm]"
+    assert not ax.child_axes  # frequencies differ by order at one speed
+    limits = [line.get_label() for line in ax.lines if "linear" in str(line.get_label())]
+    assert len(limits) == len(set(limits)) == 2
+    by_themselves = ss.plot.curves(list(swept.results), "tip", omega_unit="rpm")
+    named = [text.get_text() for text in by_themselves.get_legend().get_texts()]
+    assert {"EO 2", "EO 3"} < set(named)
+    one = swept.results[0].plot("tip", omega_unit="rpm")
+    assert one.get_xlabel() == "rotor speed at engine order 2 [rpm]"
+
+
+def test_a_mistuned_disk_under_another_engine_order_keeps_its_level():
+    disk = ss.reference.beam_ring(sectors=4, engine_order=1)
+    ring = disk.mistuned([0.01, 0.0, -0.01, 0.02]).scaled(force=0.5)
+    found = ss.sweep(
+        ring, lambda one: ss.forced_response(one, GRID, 3, observe=["2.damper"]), engine_order=[2]
+    )
+    own = ss.reference.beam_ring(sectors=4, engine_order=2).mistuned([0.01, 0.0, -0.01, 0.02])
+    alone = ss.forced_response(own.scaled(force=0.5), GRID, 3, observe=["2.damper"])
+    np.testing.assert_allclose(
+        found.results[0].amplitude("2.damper"), alone.amplitude("2.damper"), rtol=1e-10
+    )
+
+
+@pytest.mark.parametrize(
+    ("model", "keys", "message"),
+    [
+        (snecma_beam(), {"engine_order": [2]}, "is no bladed disk, so that it has no engine order"),
+        (
+            ss.reference.beam_ring(sectors=4),
+            {"engine_order": [2], "contacts": 0},
+            "an engine order is no parameter of contacts",
+        ),
+        (ss.reference.beam_ring(sectors=4), {"engine_order": [2.5]}, "engine_order"),
+        (
+            ss.BladedDisk(snecma_beam().structure, 4, engine_order=1, engine_orders={3: 4}),
+            {"engine_order": [2]},
+            "forces of harmonics '3' have orders of their own",
+        ),
+    ],
+)
+def test_engine_orders_that_cannot_be_swept(model, keys, message):
+    with pytest.raises(ss.ModelError, match=message):
+        ss.sweep(model, curve, **keys)
+
+
+def test_a_study_without_a_disk_has_no_engine_order():
+    with pytest.raises(ss.ModelError, match="engine_order: that of a bladed disk; add the table"):
+        next(Study.parse(STUDY + "[sweep]\nengine_order = [2]\n").run())

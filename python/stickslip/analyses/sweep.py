@@ -11,13 +11,15 @@ import numpy as np
 from stickslip.analyses.run import Progress, share
 from stickslip.analyses.variation import variation_of
 from stickslip.checks import brief
+from stickslip.disk import BladedDisk, MistunedDisk
 from stickslip.errors import Interrupted, ModelError
 from stickslip.model import Model
 from stickslip.results.result import Result
 from stickslip.results.sweep import Sweep
 from stickslip.settings.settings import configured
-from stickslip.settings.sweep import SweepKeys, SweepSettings
+from stickslip.settings.sweep import ENGINE_ORDER, SweepKeys, SweepSettings
 
+_NO_CONTACTS = "contacts: {} is no parameter of contacts; leave them out"
 Compute: TypeAlias = Callable[[Model, Progress], Result]
 """What is computed of a model."""
 
@@ -30,7 +32,7 @@ def sweep(
     settings: SweepKeys,
     progress: Progress = None,
 ) -> Sweep:
-    """Compute one analysis along a parameter: slip force, preload, level, stiffness or speed.
+    """Compute one analysis along a parameter: slip force, preload, level, engine order, speed.
 
     Parameters
     ----------
@@ -101,6 +103,9 @@ def _family(
     if (str(parameter) == "speed") == isinstance(models, Model):
         needed = "a function of the speed" if isinstance(models, Model) else "a Model"
         raise ModelError(f"models: {brief(models)} along {parameter}; give {needed}")
+    if isinstance(models, Model) and str(parameter) == ENGINE_ORDER:
+        kept = SweepSettings.of(parameter=ENGINE_ORDER, unit="1", values=values)
+        return kept, _at_order(models, keys)
     if isinstance(models, Model):
         variation = variation_of(models, parameter, keys, methodcaller("variable"))
         base = models
@@ -111,7 +116,7 @@ def _family(
     if not callable(models):
         raise ModelError(f"models: {brief(models)} is neither a Model nor a function of the speed")
     if keys.contacts is not None:
-        raise ModelError("contacts: a speed is no parameter of contacts; leave them out")
+        raise ModelError(_NO_CONTACTS.format("a speed"))
     build = models
 
     def at(speed: float) -> Model:
@@ -121,3 +126,17 @@ def _family(
         return model
 
     return SweepSettings.of(parameter="speed", unit="rad/s", values=values), at
+
+
+def _at_order(model: Model, keys: SweepKeys) -> Callable[[float], Model]:
+    """Return what makes the disk of an engine order."""
+    if keys.contacts is not None:
+        raise ModelError(_NO_CONTACTS.format("an engine order"))
+    if not isinstance(model, BladedDisk | MistunedDisk):
+        raise ModelError(
+            f"models: {brief(model)} is no bladed disk, so that it has no engine order; give "
+            "ss.BladedDisk(...)",
+            study="engine_order: that of a bladed disk; add the table [disk]",
+        )
+    disk = model
+    return lambda order: disk.at_order(int(order))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -79,6 +79,17 @@ class MistunedDisk(Model):
     def _parts(self) -> dict[str, Any]:
         names = ("disk", "blades", "contacts", "forces")
         return {name: getattr(self, name) for name in names}
+
+    def at_order(self, engine_order: int) -> Self:
+        """Return the assembly under forces of another engine order; see `BladedDisk.at_order`."""
+        disk = self.disk.at_order(engine_order)
+
+        def turned(force: Force) -> Force:
+            sector = int(force.dof.partition(".")[0])
+            before, now = (one.lead(sector, force.harmonic) for one in (self.disk, disk))
+            return replace(force, phase=force.phase + now - before)
+
+        return self._like(disk=disk, forces=[turned(force) for force in self.forces])
 
     def with_structure(self, structure: Structure) -> Model:
         """Return a plain `Model` with another structure of all sectors."""

@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from math import pi
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
-from stickslip.checks import Matrix, brief, set_fields, unknown, whole_number
+from stickslip.checks import Matrix, brief, listed, set_fields, unknown, whole_number
 from stickslip.disk.coupling import CyclicMatrices, Interface
 from stickslip.errors import ModelError
 from stickslip.model.contact import Contact
@@ -126,6 +126,18 @@ class Sector(Model):
     def order_of(self, harmonic: int) -> int:
         """Return the engine order of the forces of a harmonic."""
         return self.engine_orders.get(harmonic, harmonic * self.engine_order)
+
+    def at_order(self, engine_order: int) -> Self:
+        """Return the disk under forces of another engine order.
+
+        Raises ModelError if forces of other harmonics have engine orders of their own.
+        """
+        if self.engine_orders:
+            raise ModelError(
+                f"engine_order: the forces of harmonics {listed([*map(str, self.engine_orders)])} "
+                "have orders of their own, engine_orders; build a disk for each order"
+            )
+        return self._like(engine_order=engine_order)
 
     def lead(self, sector: int, harmonic: int) -> float:
         """Return by how much a harmonic of the forces on a sector is ahead of sector 0 [rad]."""

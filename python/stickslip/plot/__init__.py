@@ -22,6 +22,7 @@ from stickslip.plot.maps import design_map
 from stickslip.plot.mistuning import amplification, distribution
 from stickslip.plot.modes import backbone, mode_damping
 from stickslip.plot.multipliers import cycle_multipliers, multipliers
+from stickslip.plot.speeds import speed_response
 from stickslip.plot.statics import static_forces
 from stickslip.plot.transients import contact_history, history, phase, poincare, spectrum
 from stickslip.plot.uncertainty import backbone_band, sobol_indices, uncertainty_distribution
@@ -64,6 +65,7 @@ __all__ = [
     "slip",
     "sobol_indices",
     "spectrum",
+    "speed_response",
     "stability_map",
     "static_forces",
     "uncertainty_distribution",

@@ -7,12 +7,13 @@ axes: ``frf.plot("tip").figure.savefig("tip.pdf")``.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Unpack
 
 import numpy as np
 from matplotlib.axes import Axes
 
+from stickslip.disk import BladedDisk
 from stickslip.errors import ModelError
 from stickslip.model import Model, PointRef
 from stickslip.plot import style
@@ -56,22 +57,27 @@ def curves(
     """Draw response curves over frequency, between their two linear limits."""
     listed, measure = several(ForcedResponse, results), options["measure"]
     names = checked_labels(options["labels"], _names_of(listed))
-    omega = style.omega_scale(options["omega_unit"], listed)
+    omega, each = style.omega_scales(options["omega_unit"], listed)
     length = style.LENGTH[options["length_unit"]]
     for result in listed:
         result.amplitude(dof, measure)  # what is unknown is refused before anything is drawn
     per_force, auto = options["normalise"] == "force", options["length_unit"] == "auto"
     view = _View(ax, dof, measure, omega, length, per_force, auto)
-    _draw_limits(view, listed, stuck=options["stuck"], free=options["free"])
+    for number, scale in enumerate(dict.fromkeys(each)):
+        alike = [one for one, own in zip(listed, each, strict=True) if own == scale]
+        own = replace(view, omega=scale, named=not number)
+        _draw_limits(own, alike, stuck=options["stuck"], free=options["free"])
     single = len(listed) == 1
-    for result, name, colour in zip(listed, names, style.colours(len(listed)), strict=True):
-        view.draw(result, colour, name)
-        view.shade_bounds(result, colour)
+    colours = style.colours(len(listed))
+    for result, name, colour, scale in zip(listed, names, colours, each, strict=True):
+        own = replace(view, omega=scale)
+        own.draw(result, colour, name)
+        own.shade_bounds(result, colour)
         if options["error_band"] or (options["error_band"] is None and single):
-            view.shade_error(result, colour)
-        view.mark_certificate(result)
+            own.shade_error(result, colour)
+        own.mark_certificate(result)
         if options["peaks"]:
-            view.mark_peak(result, colour, named=single)
+            own.mark_peak(result, colour, named=single)
     view.label_axes()
     style.fit(ax, log=options["log"])
 
@@ -118,6 +124,8 @@ class _View:
     """Whether amplitudes are divided by the largest force amplitude."""
     auto: bool
     """Whether lengths get a prefix."""
+    named: bool = True
+    """Whether the legend names the linear limits."""
 
     @property
     def unit(self) -> str:
@@ -175,6 +183,8 @@ class _View:
         looks = style.linear_limit(stuck=stuck, of=at)
         if name:
             looks |= {"label": f"{name} (linear{at})"}
+        if not self.named:
+            looks |= {"label": "_"}
         x, y = self.omega.factor * omega, self._factor(model) * amplitude
         self.ax.plot(x, y, **looks)
 
@@ -292,6 +302,9 @@ def _names_of(results: Sequence[ForcedResponse]) -> list[str]:
 def _traits(result: ForcedResponse) -> dict[str, str]:
     """Say in what results may differ, each in the notation of a legend."""
     traits = {"P": f"P = {force_level(result.model):.5g} N"}
+    disk = getattr(result.model, "disk", result.model)
+    if isinstance(disk, BladedDisk):
+        traits["EO"] = f"EO {disk.engine_order}"
     for name, contact in zip(result.model.contact_names, result.model.contacts, strict=True):
         of = f" ({name})" if len(result.model.contacts) > 1 else ""
         parameters = contact.adjustable()

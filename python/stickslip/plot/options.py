@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from stickslip.plot.style import LengthUnit, OmegaUnit
 from stickslip.results import ForcedResponse
 from stickslip.results.arrays import Measure
+from stickslip.results.campbell import Campbell
 from stickslip.results.contact_map import MapField
 
 
@@ -144,6 +145,18 @@ class CycleOptions(Several, Amplitude, total=False):
     """Keywords of `limit_cycles`."""
 
     frequency: Annotated[bool, True, "Draw the frequency too, on axes below those of a new figure."]
+
+
+class SpeedOptions(Frame, total=False):
+    """Keywords of `speed_response`."""
+
+    labels: Annotated[Sequence[str] | None, None, "One per result. Default: the engine orders."]
+    log: Annotated[bool, True, "Logarithmic amplitude axis."]
+    diagram: Annotated[
+        Campbell | None,
+        None,
+        "What `campbell` returned of the same orders: lines at the speeds of its resonances.",
+    ]
 
 
 class DampingOptions(Drawing, total=False):

@@ -56,6 +56,8 @@ class Scale(NamedTuple):
 
     factor: float
     label: str
+    order: float = 0
+    """Engine order of the forces, if it is a rotor speed that is drawn."""
 
 
 _ROTOR = "rotor speed"
@@ -77,13 +79,37 @@ def omega_scale(unit: OmegaUnit, results: Any) -> Scale:
     order = orders.pop() if len(orders) == 1 else None
     if unit != "rpm" or not order:
         return OMEGA[unit]
-    return Scale(OMEGA["rpm"].factor / order, f"{_ROTOR} at engine order {order} [rpm]")
+    return rotor_speed(order)
+
+
+def rotor_speed(order: float | None) -> Scale:
+    """Return the scale of frequencies of an engine order drawn over the speed of the rotor.
+
+    None are several orders.
+    """
+    if order is None:
+        return Scale(OMEGA["rpm"].factor, f"{_ROTOR} [rpm]")
+    return Scale(OMEGA["rpm"].factor / order, f"{_ROTOR} at engine order {order:g} [rpm]", order)
+
+
+def omega_scales(unit: OmegaUnit, results: Sequence[Any]) -> tuple[Scale, list[Scale]]:
+    """Return the scale of the axis of several results, and that of each.
+
+    Of disks under several engine orders the rotor speed of each is its frequency over its order.
+    """
+    each = [omega_scale(unit, one) for one in results]
+    orders = {one.order for one in each}
+    if len(orders) == 1:
+        return each[0], each
+    if 0 in orders:
+        return OMEGA[unit], [OMEGA[unit]] * len(each)
+    return rotor_speed(None), each
 
 
 def label_omega(ax: Axes, omega: Scale) -> None:
     """Write what the axis of frequencies shows; over rotor speeds stand the frequencies."""
     ax.set_xlabel(omega.label)
-    if omega.label.startswith(_ROTOR):
+    if omega.order:
         per_hertz = omega.factor / OMEGA["Hz"].factor
 
         def hertz(x: Any) -> Any:
@@ -193,7 +219,7 @@ def finish(ax: Axes, *, made: bool, lengths: bool = True) -> None:
     long = len(handles) > _FEW
     if not made and not (roomy and long):
         ax.legend(**looks | {"frameon": True, "framealpha": 0.85, "edgecolor": "none"})
-    elif long or ax.get_title():
+    elif long or ax.get_title() or ax.child_axes:  # above stands a title, or a second axis
         ax.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), **outside)
         if made and isinstance(figure, Figure):
             figure.set_size_inches(_WIDE)

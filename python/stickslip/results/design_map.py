@@ -60,3 +60,5 @@ class SpeedResponse:
     """The degree of freedom."""
     engine_order: float
     """Frequency of the forces over the speed."""
+
+    plot = Drawn("speed_response")

@@ -7,6 +7,7 @@ from typing import Annotated, ClassVar, Self, get_args
 from pydantic import Field, Strict, model_validator
 
 from stickslip.errors import ModelError
+from stickslip.settings.entries import Index, Some
 from stickslip.settings.ranges import (
     Frictions,
     Gaps,
@@ -19,6 +20,8 @@ from stickslip.settings.ranges import (
 )
 from stickslip.settings.settings import Settings
 from stickslip.settings.variation import ContactKeys, Parameter, Swept, Variation, one_of
+
+ENGINE_ORDER = "engine_order"
 
 
 class ParameterKeys(Settings):
@@ -63,7 +66,7 @@ class ParameterKeys(Settings):
     @model_validator(mode="after")
     def _require_one(self) -> Self:
         name = self.varied
-        if isinstance(getattr(self, name), tuple):
+        if str(name) != ENGINE_ORDER and isinstance(getattr(self, name), tuple):
             raise ModelError(f"{name}: a range needs 'points' here; values are not chosen")
         return self
 
@@ -71,13 +74,18 @@ class ParameterKeys(Settings):
 class SweepKeys(ParameterKeys, ContactKeys):
     """Along which parameter models are computed; give exactly one of the parameters."""
 
-    parameters = (*get_args(Swept), "speed")
+    parameters = (*get_args(Swept), ENGINE_ORDER, "speed")
 
     normal_load: Preloads | None = Field(
         default=None,
         description="Instead: normal loads [N] of contacts whose slip force is friction times "
         "load.",
         examples=[["5 N", "10 N"]],
+    )
+    engine_order: Some[Index] | None = Field(
+        default=None,
+        description="Instead: engine orders of the forces on a bladed disk, tuned or mistuned.",
+        examples=[[2, 3, 4]],
     )
     speed: Speeds | None = Field(
         default=None,
