@@ -350,6 +350,20 @@ def test_a_model_without_contacts_has_no_damper_curve(draft, session, tmp_path):
 
 
 @pytest.mark.slow
+def test_a_sweep_is_left_out_and_named(session, tmp_path):
+    file = tmp_path / "swept.toml"
+    file.write_text(SMALL + "\n[sweep]\nslip_force = [1, 2]\n")
+    page, told = session(file)
+    assert page.greeting()["description"] == "The table [sweep] of the file is left out here."
+    assert "sweep" not in page.draft.exported(moved(page.draft))
+    page.take(asked(page))
+    for name in ("curve", "contacts", "damper"):
+        said = told.pane(1, name)["failures"]
+        assert not any("defect" in one for one in said)
+    assert told.pane(1, "contacts")["figures"]
+
+
+@pytest.mark.slow
 def test_nothing_of_it_is_loaded_with_the_library():
     code = (
         "import sys, stickslip\nfrom stickslip.cli import app\n"

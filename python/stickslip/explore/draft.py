@@ -34,6 +34,8 @@ class Draft:
         The study as the file has it.
     knobs : tuple of Knob
         The numbers that can be moved.
+    swept : bool
+        Whether the file has a table ``[sweep]``, which is left out.
 
     Raises
     ------
@@ -58,6 +60,8 @@ class Draft:
         except TOMLKitError as error:
             raise ModelError(f"{path}: cannot be edited ({error})") from None
         self.knobs = knobs_of(self._file.unwrap(), self.study.tables.analysis.levels or (1.0,))
+        # a page shows one curve: that of the sliders
+        self.swept = self._file.pop("sweep", None) is not None
         if "levels" in self._file["analysis"]:
             _put(self._file, LEVELS, [self.knobs[0].value])
         self._written = {knob.place: _at(self._file, knob.place) for knob in self.knobs}

@@ -93,9 +93,10 @@ class Session:
         study = self.draft.study
         told = ("group", "label", "value", "unit", "low", "high", "log")
         knobs = [{key: asdict(knob)[key] for key in told} for knob in self.draft.knobs]
+        left_out = "The table [sweep] of the file is left out here." if self.draft.swept else ""
         return {
             "name": study.name,
-            "description": study.tables.description,
+            "description": ". ".join(filter(None, [study.tables.description, left_out])),
             "knobs": knobs,
             "dofs": self._dofs,
             "overs": self._overs,
