@@ -58,6 +58,7 @@ def test_files_of_the_same_name_are_told_apart(results, tmp_path):
     [
         (["none.nc"], "none.nc: no such file"),
         (["cut.nc"], "cut.nc: not a readable NetCDF file, or a damaged one"),
+        (["beam.toml"], "beam.toml: a study file, no result; 'stickslip run' computes its"),
         (["changed.nc"], "changed.nc: was changed since it was saved, its digest differs"),
         (["low.nc", "cut.nc"], "cut.nc: not a readable"),
         (["odd.nc"], "odd.nc: holds 'mystery', this version reads"),
@@ -72,6 +73,7 @@ def test_refused_in_one_line(results, tmp_path, monkeypatch, arguments, message)
 
     monkeypatch.chdir(tmp_path)
     results["low"].save("low.nc")
+    Path("beam.toml").write_text("[structure]")
     Path("cut.nc").write_bytes(Path("low.nc").read_bytes()[:9000])
     Path("changed.nc").write_bytes(Path("low.nc").read_bytes() + b"\n")
     odd = xr.load_dataset("low.nc", engine="h5netcdf").drop_dims("seal_byte")

@@ -142,6 +142,7 @@ def test_show_prints_the_model_the_peaks_and_the_assumptions(results):
         ([], "beam-20.313-curve.png"),
         (["--dof", "tip", "--hertz", "--linear", "--per-force"], "beam-20.313-curve.png"),
         (["--dof", "tip", "--waveform", "170"], "beam-20.313-waveform.png"),
+        (["--dof", "tip", "--rpm"], "beam-20.313-curve.png"),
         (["--loop", "27 Hz", "--contact", "jenkins"], "beam-20.313-loop.png"),
         (["--dof", "tip", "--out", "drawn/beam.svg"], "drawn/beam.svg"),
     ],
@@ -168,6 +169,7 @@ def test_plot_writes_a_picture(results, tmp_path, monkeypatch, options, name):
         (["--loop", "nan"], "--loop = 'nan' is not a frequency [rad/s]"),
         (["--loop", "170", "--contact", "5"], "there is no contact at position 5"),
         (["--loop", "170", "--waveform", "170"], "--waveform and --loop exclude each other"),
+        (["--hertz", "--rpm"], "--hertz and --rpm exclude each other; give one"),
         (["--out", "beam.xyz"], "beam.xyz: '.xyz' is no format of pictures; known: "),
     ],
 )

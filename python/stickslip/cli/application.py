@@ -6,11 +6,12 @@ import io
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated, ParamSpec
+from typing import Annotated, Literal, ParamSpec
 
 import typer
 
 from stickslip.cli.exit_codes import Command, Commands, guarded
+from stickslip.errors import ModelError
 
 P = ParamSpec("P")
 
@@ -19,9 +20,23 @@ Files = Annotated[
 ]
 Dofs = Annotated[
     list[str] | None,
-    typer.Option("--dof", help="DOF to show, repeatable; default: with a force or a contact."),
+    typer.Option(
+        "--dof",
+        help="Degree of freedom to show; several times for more. Default: those with a force "
+        "or a contact.",
+    ),
 ]
 Hertz = Annotated[bool, typer.Option("--hertz", help="Frequency axes in Hz.")]
+Rpm = Annotated[
+    bool, typer.Option("--rpm", help="Frequency axes in rpm; of a disk the speed of its rotor.")
+]
+
+
+def omega_unit(*, hertz: bool, rpm: bool) -> Literal["rad/s", "Hz", "rpm"]:
+    """Return the unit of frequency axes that the options ask for."""
+    if hertz and rpm:
+        raise ModelError("--hertz and --rpm exclude each other; give one")
+    return "Hz" if hertz else "rpm" if rpm else "rad/s"
 
 
 app = typer.Typer(

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, cast
 
 import typer
 
-from stickslip.cli.application import Dofs, Files, Hertz, command
+from stickslip.cli.application import Dofs, Files, Hertz, Rpm, command, omega_unit
 from stickslip.cli.exit_codes import NOT_CONVERGED, integer
 from stickslip.cli.run import warned
 from stickslip.errors import Interrupted, ModelError
@@ -55,9 +55,10 @@ def plot(
     results: Files,
     dof: Dofs = None,
     out: Annotated[
-        Path | None, _file(help="Picture (.png, .pdf, .svg); default: beside the result.")
+        Path | None, _file(help="Picture to write (.png, .pdf, .svg). Default: beside the result.")
     ] = None,
     hertz: Hertz = False,
+    rpm: Rpm = False,
     log: Annotated[bool, typer.Option("--log/--linear", help="Amplitude axis.")] = True,
     per_force: Annotated[
         bool, typer.Option("--per-force", help="Amplitude per unit of force.")
@@ -67,16 +68,17 @@ def plot(
     ] = None,
     loop: Annotated[str | None, _omega(help="Draw the hysteresis loop at this frequency.")] = None,
     contact: Annotated[
-        str, typer.Option(help="Contact of the loop: position, from 0, or name.")
+        str, typer.Option(help="Contact of the loop: its position, counted from 0, or its name.")
     ] = "0",
     events: Annotated[
-        str | None, _omega(help="Draw stick and slip over the period, of orbits.")
+        str | None,
+        _omega(help="Draw stick and slip over one period of an exact orbit."),
     ] = None,
     multipliers: Annotated[
-        bool, typer.Option("--multipliers", help="Draw the Floquet multipliers of orbits.")
+        bool, typer.Option("--multipliers", help="Draw the Floquet multipliers of exact orbits.")
     ] = False,
 ) -> None:
-    """Draw results, or of curves one period of the motion, a loop, events or multipliers."""
+    """Draw results; of a response curve also one period, a hysteresis loop or multipliers."""
     from stickslip import load
     from stickslip.cli import console, drawing
     from stickslip.views.picture import draw
@@ -85,7 +87,8 @@ def plot(
     pictures = {"waveform": waveform, "loop": loop, "events": events}
     asked = {name: omega for name, omega in pictures.items() if omega is not None}
     asked |= {"multipliers": ""} if multipliers else {}
-    wanted = drawing.Wanted(dof, "Hz" if hertz else "rad/s", log, per_force, contact)
+    unit = omega_unit(hertz=hertz, rpm=rpm)
+    wanted = drawing.Wanted(dof, unit, log, per_force, contact)
     name, panels = wanted.picture(asked, named)
     picture = out or results[0].with_name(f"{results[0].stem}-{name}.png")
     draw(panels, picture)
@@ -106,10 +109,12 @@ def certify(
         str, typer.Option(help="How many points, chosen at random, or 'all'.", metavar="NUMBER")
     ] = "20",
     seed: Annotated[
-        int, typer.Option(help="Of the random choice.", metavar="INTEGER", parser=integer)
+        int,
+        typer.Option(help="Seed of the random points.", metavar="INTEGER", parser=integer),
     ] = 0,
     dof: Annotated[
-        list[str] | None, typer.Option(help="DOF to compare, repeatable; default: all.")
+        list[str] | None,
+        typer.Option(help="Degree of freedom to compare, several times for more. Default: all."),
     ] = None,
     out: Annotated[Path | None, _file(help="File to write; default: the same.")] = None,
 ) -> None:
@@ -168,8 +173,10 @@ def report(
     title: Annotated[str | None, typer.Option(help="Heading of the page.")] = None,
     dof: Dofs = None,
     hertz: Hertz = False,
+    rpm: Rpm = False,
     length: Annotated[
-        str, typer.Option("--length-unit", help="Of amplitudes: auto, m, mm or um.", metavar="UNIT")
+        str,
+        typer.Option("--length-unit", help="Unit of amplitudes: auto, m, mm, um.", metavar="UNIT"),
     ] = "auto",
 ) -> None:
     """Write results of any kind as one HTML page that is read without a network."""
@@ -182,7 +189,7 @@ def report(
         page,
         title=title,
         dofs=dof,
-        omega_unit="Hz" if hertz else "rad/s",
+        omega_unit=omega_unit(hertz=hertz, rpm=rpm),
         length_unit=cast("Literal['auto', 'm', 'mm', 'um']", length),
     )
     tell(f"report: {page}")

@@ -110,6 +110,8 @@ def _opened(path: str | os.PathLike[str]) -> tuple[Path, Record]:
     source = file_path(path, "path")
     if not is_file(source):
         raise ModelError(f"{source}: no such file")
+    if source.suffix == ".toml":
+        raise ModelError(f"{source}: a study file, no result; 'stickslip run' computes its results")
     return source, _read(source)
 
 
