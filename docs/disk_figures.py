@@ -134,9 +134,9 @@ def flutter_waves(folder: Path = ASSETS) -> Path:
         "", (7.0, 1.15), (11.0, 1.15), arrowprops={"arrowstyle": "->", "color": "crimson"}
     )
     left.set(xlabel="sector", ylabel="displacement", title="nodal diameter +2", ylim=(-1.1, 1.35))
-    left.legend(frameon=False, fontsize="small", loc="lower right")
+    left.legend(frameon=False, fontsize="small", loc="upper right", ncols=2)
     waves.plot(ax=middle)
-    found.plot("tip", length_unit="um", ax=right)
+    found.plot("tip", ax=right)
     return save(figure, folder / "flutter-waves.png")
 
 

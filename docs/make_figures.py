@@ -62,7 +62,7 @@ def structural_curve(folder: Path = ASSETS) -> Path:
     )
     curve = ss.damper_curve(model, slip_force=factors, common="factor", dof="1.tip")
     figure = Figure(figsize=(7.5, 4.4), layout="constrained")
-    plot.damper(curve, length_unit="um", ax=figure.subplots())
+    plot.damper(curve, ax=figure.subplots())
     return save(figure, folder / "structural-curve.png")
 
 

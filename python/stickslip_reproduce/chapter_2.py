@@ -125,7 +125,7 @@ def _single_dof(ratio: float, resolution: Resolution, *, log: bool = False) -> N
     ]
     low = [top for top, _ in maxima(orbits) if top < 80.0]
     facts += [Fact(f"subresonance {n}", top, "rad/s") for n, top in enumerate(low[::-1], start=1)]
-    y = Axis("amplitude", "m", "10⁻⁵ m", 1e5, log=log)
+    y = Axis("amplitude", "m", "µm", 1e6, log=log)
     return Numbers(Plot(FREQUENCY, y, (Panel(series, f"P = {ratio:g} F_d"),)), tuple(facts))
 
 
@@ -151,7 +151,7 @@ def figure_2_6(resolution: Resolution) -> Numbers:
         )
     optimum = ss.optimal_damper(model, dof="mass", parameter="level", omega=NEAR_RESONANCE)
     facts.append(Fact("optimal P / F_d, converged", optimum.value))
-    y = Axis("amplitude per force x / P", "m/N", "10⁻⁷ m/N", 1e7)
+    y = Axis("amplitude per force x / P", "m/N", "µm/N", 1e6)
     return Numbers(Plot(FREQUENCY, y, (Panel(tuple(series)),)), tuple(facts))
 
 
@@ -180,7 +180,7 @@ def figure_2_8(resolution: Resolution) -> Numbers:
         Fact("peak at the damper", exact.peak("damper").amplitude, "m", 6.22e-5),
         Fact("single harmonic", single.peak("damper").amplitude, "m", 6.22e-5),
     )
-    y = Axis("amplitude at the damper", "m", "10⁻⁵ m", 1e5)
+    y = Axis("amplitude at the damper", "m", "µm", 1e6)
     return Numbers(Plot(FREQUENCY, y, (Panel(series, "P = 16.563 N"),)), facts)
 
 

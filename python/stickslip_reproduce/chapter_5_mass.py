@@ -191,7 +191,7 @@ def _integrated(dof: str, resolution: Resolution, *, whole: bool = True) -> Numb
         Fact("largest difference to the exact sticking orbit", 100.0 * error, "%"),
         *_at_ratios(dof),
     )
-    y = Y[dof] if whole or dof == "omega" else Axis("amplitude of the mass", "m", "10⁻⁵ m", 1e5)
+    y = Y[dof] if whole or dof == "omega" else Axis("amplitude of the mass", "m", "µm", 1e6)
     return Numbers(Plot(RATIO, y, (Panel(series),)), facts)
 
 

@@ -29,7 +29,7 @@ NEAR = 0.01
 """How far the exact peak may be from that of 15 harmonics, over its frequency."""
 
 FORCE = Axis("contact force", "N")
-DISPLACEMENT = Axis("amplitude", "m", "10⁻⁵ m", 1e5)
+DISPLACEMENT = Axis("amplitude", "m", "µm", 1e6)
 
 PRINTED = {
     (): (541.26, 1090.2, 2026.59),

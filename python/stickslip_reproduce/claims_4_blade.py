@@ -98,7 +98,7 @@ def like_the_beam(resolution: Resolution) -> Found:
     )
     plot = Plot(
         Axis("angular frequency ω", "rad/s"),
-        Axis("amplitude of the tip", "m", "10⁻⁵ m", 1e5),
+        Axis("amplitude of the tip", "m", "µm", 1e6),
         (Panel(series, "open blade, F_d = F_d0"),),
     )
     return Found(

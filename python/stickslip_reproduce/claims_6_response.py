@@ -150,7 +150,7 @@ def interesting(resolution: Resolution) -> Found:
         Series("end of the printed axis", [SPAN[1]] * 2, [0.0, float(size.max())]),
         Series("natural frequency, 1 slipping", [float(free[1])] * 2, [0.0, float(size.max())]),
     )
-    plot = Plot(FREQUENCY, Axis("amplitude at contact 1", "m", "10⁻⁵ m", 1e5), (Panel(series),))
+    plot = Plot(FREQUENCY, Axis("amplitude at contact 1", "m", "µm", 1e6), (Panel(series),))
     return Found(
         (
             Fact("frequency of the maximum", float(shown.omega[size.argmax()]), "rad/s"),

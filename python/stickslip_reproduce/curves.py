@@ -31,13 +31,13 @@ PATIENCE = 5000
 """Periods after which a motion that is not steady is given up."""
 
 FREQUENCY = Axis("angular frequency ω", "rad/s")
-DAMPER = Axis("amplitude x₁ at the damper", "m", "10⁻⁵ m", 1e5)
-TIP = Axis("amplitude x₂ of the tip", "m", "10⁻³ m", 1e3)
+DAMPER = Axis("amplitude x₁ at the damper", "m", "µm", 1e6)
+TIP = Axis("amplitude x₂ of the tip", "m", "mm", 1e3)
 PER_FORCE = {
-    "damper": Axis("x₁ / P at the damper", "m/N", "10⁻⁶ m/N", 1e6),
-    "tip": Axis("x₂ / P at the tip", "m/N", "10⁻⁴ m/N", 1e4),
+    "damper": Axis("x₁ / P at the damper", "m/N", "µm/N", 1e6),
+    "tip": Axis("x₂ / P at the tip", "m/N", "µm/N", 1e6),
 }
-PERIOD = Axis("displacement", "m", "10⁻⁵ m", 1e5)
+PERIOD = Axis("displacement", "m", "µm", 1e6)
 PERIOD_SHARE = Axis("time over period ω t / 2π")
 
 

@@ -51,10 +51,10 @@ PERIODS = 1000
 RATIO = Axis("negative viscous damping ratio r")
 OMEGA = Axis("angular frequency ω", "rad/s")
 AMPLITUDES = {
-    "mass": Axis("amplitude of the mass", "m", "10⁻⁵ m", 1e5, log=True),
-    "damper": Axis("amplitude x₁ at the damper", "m", "10⁻⁵ m", 1e5, log=True),
-    "tip": Axis("amplitude x₂ of the tip", "m", "10⁻⁵ m", 1e5, log=True),
-    "mode": Axis("amplitude x₃", "m", "10⁻⁵ m", 1e5, log=True),
+    "mass": Axis("amplitude of the mass", "m", "mm", 1e3, log=True),
+    "damper": Axis("amplitude x₁ at the damper", "m", "mm", 1e3, log=True),
+    "tip": Axis("amplitude x₂ of the tip", "m", "mm", 1e3, log=True),
+    "mode": Axis("amplitude x₃", "m", "mm", 1e3, log=True),
 }
 
 NEWTON = "Newton's method instead of Broyden's: the equations solved are the same."

@@ -151,10 +151,13 @@ class _View:
         states = np.full(omega.size, "stable")
         if (result.stability != "not decided").any():
             states = np.where(solved, result.stability, "stable")
-        for number, (piece, state) in enumerate(style.pieces(states)):
+        pieces = style.pieces(states)
+        # the legend shows a solid line, if any
+        named_at = next((at for at, (_, state) in enumerate(pieces) if state == "stable"), 0)
+        for number, (piece, state) in enumerate(pieces):
             named: Looks = {
                 "ls": style.LINES[state],
-                "label": "_" if number else label,
+                "label": label if number == named_at else "_",
                 "gid": style.RESPONSE,
             }
             self.ax.plot(omega[piece], height[piece], **looks, **named)

@@ -78,8 +78,10 @@ def cycle_multipliers(ax: Axes, /, result: LimitCycles, **options: Unpack[Drawin
         counted = np.arange(values.shape[1]) >= result.neutral[chosen][:, None]
         shade = np.broadcast_to(result.omega[chosen][:, None], values.shape)[counted]
         shown = values[counted]
-        looks |= {"lw": width, "marker": marker, "label": side, "zorder": 2.5}
+        looks |= {"lw": width, "marker": marker, "zorder": 2.5}
         cloud = ax.scatter(shown.real, shown.imag, c=shade, **looks)
+        # the colour of one motion would not stand for its side
+        ax.scatter([], [], s=12, lw=width, marker=marker, color=style.GREY, label=side)
     ax.figure.colorbar(cloud, ax=ax, label="frequency [rad/s]")
     edge = 1.08 * np.clip(np.nanmax(np.abs(result.multipliers[known])), 1.0, _WIDEST)
     ax.set(xlim=(-edge, edge), ylim=(-edge, edge))
