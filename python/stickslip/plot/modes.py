@@ -57,6 +57,7 @@ def backbone(
     lowest.set_xlabel(_AMPLITUDE)
     if below is not None:
         below.set(ylabel="damping ratio")
+        style.bare(below)
     if options["shapes"]:
         _shapes(ax, branches[0])
     style.finish(ax, made=made)
@@ -124,3 +125,4 @@ def _shapes(ax: Axes, mode: NonlinearModes) -> None:
         shape = np.abs(mode.arrays.displacement[index, 1])
         inset.bar(np.arange(shape.size), shape / max(shape.max(), np.finfo(float).tiny))
         inset.set(xticks=[], yticks=[], ylim=(0.0, 1.05))
+        inset.set_title("shape", fontsize="x-small", pad=2.0)

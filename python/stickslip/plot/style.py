@@ -60,7 +60,8 @@ class Scale(NamedTuple):
     """Engine order of the forces, if it is a rotor speed that is drawn."""
 
 
-_ROTOR = "rotor speed"
+_ROTOR, _ABOVE = "rotor speed", "above"
+"""What an axis shows, and the name (gid) of the one above, where no legend can stand."""
 
 OMEGA: dict[str, Scale] = {
     "rad/s": Scale(1.0, "angular frequency ω [rad/s]"),
@@ -116,7 +117,7 @@ def label_omega(ax: Axes, omega: Scale) -> None:
             return x / per_hertz
 
         above = ax.secondary_xaxis("top", functions=(hertz, lambda x: per_hertz * np.asarray(x)))
-        above.set_xlabel("frequency [Hz]")
+        above.set(xlabel="frequency [Hz]", gid=_ABOVE)
 
 
 LENGTH: dict[str, Scale] = {
@@ -219,7 +220,7 @@ def finish(ax: Axes, *, made: bool, lengths: bool = True) -> None:
     long = len(handles) > _FEW
     if not made and not (roomy and long):
         ax.legend(**looks | {"frameon": True, "framealpha": 0.85, "edgecolor": "none"})
-    elif long or ax.get_title() or ax.child_axes:  # above stands a title, or a second axis
+    elif long or ax.get_title() or any(one.get_gid() == _ABOVE for one in ax.child_axes):
         ax.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), **outside)
         if made and isinstance(figure, Figure):
             figure.set_size_inches(_WIDE)
