@@ -114,6 +114,37 @@ def test_what_is_said_of_several_results_is_said_once():
     at_rest = [one for one in springs.diagnostics if one.code == "mode-at-rest"]
     assert [one.data["results"] for one in at_rest] == [1, 1]
     assert at_rest[0].text.endswith("(1 of 2 results)")
+    assert at_rest[0].text.endswith("At 1e+07 N/m (1 of 2 results)")
+
+
+def test_facts_that_differ_stand_with_their_value():
+    def ranged(model):
+        return ss.forced_response(model, (100, 300), 3)
+
+    made = ss.sweep(snecma_beam(), ranged, level=[0.01, 1])
+    facts = view_of([made]).facts(made)
+    points = [said for what, said in facts if what == "points"]
+    counts = [one.omega.size for one in made.results]
+    assert counts[0] != counts[1]
+    for said, value, count in zip(points, ("0.01", "1"), counts, strict=True):
+        assert said.startswith(f"{value}: {count} from 100 to 300 rad/s")
+    assert [said for what, said in facts if what == "harmonics"]
+
+
+def test_sums_of_degrees_of_freedom_are_named_once():
+    wedge = ss.WedgeDamper(
+        angle=30.0,
+        mass=0.1,
+        friction=0.5,
+        tangential_stiffness=3e5,
+        normal_stiffness=3e5,
+        load=120.0,
+    )
+    blade = ss.Structure(np.eye(2), 1e5 * np.eye(2), dofs=["x", "y"])
+    model = wedge.between(blade, blade, left_dofs=["x", "y"], right_dofs=["x", "y"])
+    static = ss.static_response(model)
+    (left, _) = [said for what, said in view_of([static]).facts(static) if what == "contact"]
+    assert left.startswith("left: coulomb at damper.x, damper.y, left.x, left.y, friction 0.5")
 
 
 def test_it_draws_a_family(swept):

@@ -59,6 +59,7 @@ def limit_cycles(
     ax.set(yscale="log", ylabel=f"amplitude of {dof} [{length.label}]")
     if below is not None:
         below.set_ylabel(omega.label)
+        style.bare(below)
     style.finish(ax, made=made, lengths=options["length_unit"] == "auto")
     return ax
 

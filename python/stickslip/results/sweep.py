@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from importlib import import_module
@@ -26,6 +26,8 @@ from stickslip.settings.sweep import SweepSettings
 
 _SEVERAL = ("curves", "damper", "limit_cycles", "backbone")
 """Figures of several results."""
+_NAMED = 3
+"""So many results at most are named by their values."""
 
 
 class Sweep(Result):
@@ -76,10 +78,7 @@ class Sweep(Result):
     @property
     def written(self) -> tuple[str, ...]:
         """The values with their unit; of a speed in rpm."""
-        if self.parameter == "speed":
-            return tuple(f"{value * 30.0 / np.pi:.6g} rpm" for value in self.values)
-        unit = "" if self.unit == "1" else f" {self.unit}"
-        return tuple(f"{value:.6g}{unit}" for value in self.values)
+        return _written(self.settings, len(self.results))
 
     def at(self, value: float) -> Result:
         """Return the result at the value nearest to one."""
@@ -196,10 +195,19 @@ class Sweep(Result):
                 name: int(count)
                 for name, count in _summed([one.counters for one in results]).items()
             },
-            diagnostics=_told(results),
+            diagnostics=_told(results, _written(settings, len(results))),
             settings=settings,
             results=results,
         )
+
+
+def _written(settings: SweepSettings, count: int) -> tuple[str, ...]:
+    """Return the values of the results with their unit."""
+    values = settings.values[:count]
+    if settings.parameter == "speed":
+        return tuple(f"{value * 30.0 / np.pi:.6g} rpm" for value in values)
+    unit = "" if settings.unit == "1" else f" {settings.unit}"
+    return tuple(f"{value:.6g}{unit}" for value in values)
 
 
 def _figure_of(result: Result) -> str:
@@ -210,24 +218,27 @@ def _figure_of(result: Result) -> str:
     return ""
 
 
-def _told(results: tuple[Result, ...]) -> tuple[Diagnostic, ...]:
-    """Return what is said of the results: once what has the same code and data, and of how many."""
+def _told(results: tuple[Result, ...], names: Sequence[str]) -> tuple[Diagnostic, ...]:
+    """Return what is said of the results: once what has the same code and data, and of which."""
     found: dict[tuple[Any, ...], dict[int, Diagnostic]] = {}
     for number, one in enumerate(results):
         for said in one.diagnostics:
             # What has no data is told by its words.
             key = (said.code, *sorted(said.data.items())) if said.data else (said.code, said.text)
             found.setdefault(key, {}).setdefault(number, said)
-    return tuple(_of_members(list(same.values()), len(results)) for same in found.values())
+    return tuple(_of_members(same, names) for same in found.values())
 
 
-def _of_members(same: list[Diagnostic], total: int) -> Diagnostic:
-    """Return what is said of some of the results, with their number."""
+def _of_members(said: Mapping[int, Diagnostic], names: Sequence[str]) -> Diagnostic:
+    """Return what is said of some of the results, with their number or, if few, their values."""
+    first, total = next(iter(said.values())), len(names)
     if total == 1:
-        return same[0]
-    who = f"all {total}" if len(same) == total else f"{len(same)} of {total}"
-    text, data = f"{same[0].text} ({who} results)", {**same[0].data, "results": len(same)}
-    return replace(same[0], text=text, data=data)
+        return first
+    who = f"all {total}" if len(said) == total else f"{len(said)} of {total}"
+    few = len(said) < total and len(said) <= _NAMED
+    where = f" At {', '.join(names[number] for number in said)}" if few else ""
+    text, data = f"{first.text}{where} ({who} results)", {**first.data, "results": len(said)}
+    return replace(first, text=text, data=data)
 
 
 def _summed(parts: list[Mapping[str, Any]]) -> dict[str, float]:

@@ -190,7 +190,8 @@ def _state_rows(result: ForcedResponse) -> list[Row]:
             slips, opens = (of(name)[solved] for of in (result.slip_fraction, result.open_fraction))
             shares = {"open": opens, "slips": slips, "sticks": 1.0 - slips - opens}
             said = (
-                f"{state} {max(one.min(), 0.0):.0%} to {one.max():.0%}"
+                # rounding may leave less than nothing
+                f"{state} {max(0.0, one.min()):.0%} to {max(0.0, one.max()):.0%}"
                 for state, one in shares.items()
             )
             rows.append(("states", f"{name}: {', '.join(said)} of the period"))

@@ -48,7 +48,17 @@ class SweepView(View[Sweep]):
         of = "" if variation is None else f" of {', '.join(variation.names) or 'all forces'}"
         varied = result.parameter.replace("_", " ")
         rows = [("varied", f"{varied}{of}"), ("values", ", ".join(result.written))]
-        return [*rows, *_view(result).about(result.results[0])]
+        members = [_view(result).about(one) for one in result.results]
+        named = list(zip(result.written, members, strict=True))
+        alike = [row for row in members[0] if all(row in own for own in members)]
+        apart = [
+            (what, f"{name}: {said}")
+            for subject in dict.fromkeys(what for own in members for what, _ in own)
+            for name, own in named
+            for what, said in own
+            if what == subject and (what, said) not in alike
+        ]
+        return [*rows, *alike, *apart]
 
     def failures(self, result: Sweep) -> list[str]:
         """Word what was not solved, value by value."""

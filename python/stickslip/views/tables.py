@@ -60,9 +60,9 @@ def model_rows(model: Model) -> list[Row]:
         order = f"engine order {model.disk.engine_order}"
         rows.append(("disk", f"{model.sectors} sectors of their own, {order}"))
     for contact in model.contacts[:_SHOWN_PARTS]:
-        ends = contact.dofs[:_SHOWN_ENDS]
-        more = " - ..." if len(contact.dofs) > _SHOWN_ENDS else ""
-        place = " - ".join(dof or "ground" for dof in ends) + more
+        # a sum of degrees of freedom names one several times
+        ends = list(dict.fromkeys(dof or "ground" for dof in contact.dofs))
+        place = " - ".join(ends) if len(ends) == 2 else listed(ends, _SHOWN_ENDS)
         rows.append(("contact", f"{contact.name}: {contact.law} at {place}, {contact.summary()}"))
     for force in model.forces[:_SHOWN_PARTS]:
         values = f"amplitude {force.amplitude:g} N, phase {force.phase:g} rad"
