@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib import pyplot
 
 import stickslip as ss
 from stickslip.reference import snecma_beam
@@ -397,3 +398,18 @@ def test_engine_orders_that_cannot_be_swept(model, keys, message):
 def test_a_study_without_a_disk_has_no_engine_order():
     with pytest.raises(ss.ModelError, match="engine_order: that of a bladed disk; add the table"):
         next(Study.parse(STUDY + "[sweep]\nengine_order = [2]\n").run())
+
+
+def test_what_is_drawn_one_by_one_has_its_value_as_title():
+    made = ss.sweep(snecma_beam(), lambda one: ss.transient(one, 170.0, 3), level=[0.5, 1.0])
+    assert not made.drawn_together
+    assert str(made).startswith("Sweep(2 values of level from 0.5 to 1, a Transient each)")
+    output = Study.parse(STUDY).tables.output
+    panels = view_of([made]).panels([made], ["tip"], output)
+    titles = []
+    for panel in panels:
+        _, ax = pyplot.subplots()
+        panel(ax=ax)
+        titles.append(ax.get_title().partition(":")[0])
+        pyplot.close()
+    assert set(titles) == {"level = 0.5", "level = 1"}

@@ -9,7 +9,7 @@ from typing import Unpack
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
-from matplotlib.ticker import LogFormatter, MaxNLocator
+from matplotlib.ticker import MaxNLocator
 
 from stickslip.checks import brief, members, whole_number
 from stickslip.disk import BladedDisk, NodalDiameters
@@ -166,8 +166,7 @@ def aerodynamic_limits(
     )
     bar = ax.figure.colorbar(shade, ax=ax, label=f"amplitude of {dof} [{length.label}]")
     if colour is not None:
-        bar.ax.yaxis.set_major_formatter(LogFormatter())
-        bar.ax.yaxis.set_minor_formatter(LogFormatter())
+        style.number_bar(bar.ax)
     ax.plot(x, 100.0 * held, color="crimson", lw=1.2, label="friction holds above")
     flow = 100.0 * result.arrays.rest_aerodynamic_ratio[order]
     shown = flow >= 100.0 * ratios[0]

@@ -331,6 +331,14 @@ def prefix_axes(ax: Axes, *, lengths: bool) -> None:
                 axis.set_minor_locator(LogLocator(subs=(2.0, 5.0)))
 
 
+def number_bar(ax: Axes) -> None:
+    """Write plain numbers beside a logarithmic bar of colours."""
+    written = FuncFormatter(lambda value, _: f"{value:g}")
+    ax.yaxis.set_major_formatter(written)
+    ax.yaxis.set_minor_locator(LogLocator(subs=(2.0, 5.0)))
+    ax.yaxis.set_minor_formatter(written)
+
+
 def _number_decades(ax: Axes) -> None:
     """Write plain numbers on a logarithmic axis, and some between the decades if there are few."""
     low, high = ax.get_ylim()

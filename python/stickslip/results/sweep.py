@@ -50,7 +50,8 @@ class Sweep(Result):
         values, of = self.values, type(self.results[0]).__name__
         return (
             f"Sweep({values.size} values of {self.parameter} from {values.min():g} to "
-            f"{values.max():g} {self.unit}, a {of} each)"
+            f"{values.max():g} {self.unit}".removesuffix(" 1")
+            + f", a {of} each)"
         )
 
     @property
@@ -80,6 +81,11 @@ class Sweep(Result):
         """The values with their unit; of a speed in rpm."""
         return _written(self.settings, len(self.results))
 
+    @property
+    def drawn_together(self) -> bool:
+        """Whether a figure shows all results, as response curves."""
+        return _figure_of(self.results[0]) in _SEVERAL
+
     def at(self, value: float) -> Result:
         """Return the result at the value nearest to one."""
         return self.results[int(np.abs(self.values - value).argmin())]
@@ -87,7 +93,7 @@ class Sweep(Result):
     def plot(self, *args: Any, **options: Any) -> Axes:
         """Draw the family of curves; the arguments are those of the results' own `plot`."""
         name = _figure_of(self.results[0])
-        if name not in _SEVERAL:
+        if not self.drawn_together:
             raise ModelError(
                 f"plot: results of kind {self.results[0].kind.replace('_', ' ')} are drawn one at "
                 "a time; write sweep.results[0].plot(...)"

@@ -61,6 +61,6 @@ def titled(panel: Panel, name: str) -> Panel:
 
     def drawn(*, ax: Axes) -> None:
         panel(ax=ax)
-        ax.set_title(f"{name}: {ax.get_title()}", fontsize="medium")
+        ax.set_title(": ".join(filter(None, [name, ax.get_title()])), fontsize="medium")
 
     return drawn

@@ -10,7 +10,7 @@ from stickslip.drawn import plots
 from stickslip.results.forced_response import ForcedResponse
 from stickslip.results.sweep import Sweep
 from stickslip.views.kinds import Dofs, Rows, View, view_of
-from stickslip.views.picture import Panels
+from stickslip.views.picture import Panels, titled
 from stickslip.views.tables import Row, Table
 
 if TYPE_CHECKING:
@@ -80,8 +80,12 @@ class SweepView(View[Sweep]):
                 }
                 curves = partial(plots.curves, list(result.results), labels=result.labels, **units)
                 drawn += [partial(curves, dof=dof) for dof in dofs]
-            else:
+            elif result.drawn_together:
                 drawn += _view(result).panels(result.results, dofs, output)
+            else:
+                for name, one in zip(result.labels, result.results, strict=True):
+                    own = _view(result).panels([one], dofs, output)
+                    drawn += [titled(panel, name) for panel in own]
         return drawn
 
 
