@@ -75,3 +75,9 @@ def test_help_names_every_key():
             continue
         for key in inspect.signature(value).parameters:
             assert re.search(rf"^(\w+, )*{key}(, \w+)* : ", value.__doc__, re.M), (name, key)
+
+
+def test_the_command_is_a_module_too():
+    command = [sys.executable, "-m", "stickslip", "run", "none.toml"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (2, "error: none.toml: no such study file\n")
