@@ -413,3 +413,9 @@ def test_what_is_drawn_one_by_one_has_its_value_as_title():
         titles.append(ax.get_title().partition(":")[0])
         pyplot.close()
     assert set(titles) == {"level = 0.5", "level = 1"}
+
+
+def test_a_report_counts_the_points_of_all_results(swept):
+    from stickslip.html.sections import _status
+
+    assert _status(swept) == f"{3 * GRID.size} converged"

@@ -144,10 +144,13 @@ def _kind(result: Result) -> str:
 
 def _status(result: Any) -> str:
     """Count how the points ended, or say how the one computation did."""
-    status = getattr(result, "status", "")
-    if isinstance(status, str):
-        return str(status)
-    return ", ".join(f"{count} {name}" for name, count in Counter(map(str, status)).items())
+    found = [getattr(one, "status", "") for one in getattr(result, "results", [result])]
+    if len(found) == 1 and isinstance(found[0], str):
+        return str(found[0])
+    counted: Counter[str] = Counter()
+    for one in found:
+        counted.update([one] * bool(one) if isinstance(one, str) else map(str, one))
+    return ", ".join(f"{count} {name}" for name, count in counted.items())
 
 
 def _settings(result: Any) -> list[Row]:
