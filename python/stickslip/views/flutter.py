@@ -42,7 +42,10 @@ class FlutterView(View[FlutterMap]):
             for index, one in zip(found.tolist(), result.cycles(wave), strict=True):
                 sizes = arrays.cycle_displacement[index, columns] / length
                 answer = STATES[one.stability].answer
-                shown = *(f"{x:#.6g}" for x in sizes), "" if isnan(one.error) else f"{one.error:.1e}"
+                shown = (
+                    *(f"{x:#.6g}" for x in sizes),
+                    "" if isnan(one.error) else f"{one.error:.1e}",
+                )
                 yield name, *rest, f"{one.omega:#.8g}", *shown, answer, fate
             if not found.size:
                 yield (
