@@ -8,11 +8,11 @@ use super::krylov_newton::{KrylovNewton, Products};
 use super::linear::{Factor, Linear};
 use super::ring_newton::RingNewton;
 use super::ring_series::RingSeries;
-use super::slip_jacobian::{Border, Loads, SlipJacobian};
+use super::slip_jacobian::{Answers, Border, Loads, SlipJacobian};
 use crate::contact::SlipLoad;
 use crate::model::Model;
 use crate::solve::{norm, Parametrised, System};
-use crate::structure::{ContactModes, ModalOrders};
+use crate::structure::{Compliance as _, ContactModes, ModalOrders};
 use crate::timing::Profile;
 use faer::Mat;
 
@@ -75,23 +75,28 @@ impl Condensed<'_> {
     /// Assembles and factors the equations of a Newton step.
     fn factorise(&mut self) {
         let harmonics = self.table.harmonics();
+        let active = self.active_points();
         let compliance = self.model.compliance();
-        self.factor = match (&self.linear, compliance.ring()) {
+        self.factor = match (&mut self.linear, compliance.ring()) {
             (Linear::Modal(_), _) => Some(Factor::Krylov(self.krylov_newton())),
             (Linear::Ring { orders, .. }, Some(ring)) => {
-                Some(Factor::Ring(Box::new(RingNewton::new(
-                    RingSeries::new(orders, harmonics),
-                    ring.layout(),
-                    &self.loads,
-                    self.model.points(),
-                ))))
+                Some(if RingNewton::suits(ring, harmonics, active.len()) {
+                    Factor::Ring(Box::new(RingNewton::new(
+                        RingSeries::new(orders, harmonics),
+                        ring.layout(),
+                        &self.loads,
+                        self.model.points(),
+                    )))
+                } else {
+                    orders.iter_mut().for_each(|order| order.ask(&active, ring.contacts()));
+                    let answers = Answers::of_ring(orders, harmonics, ring.contacts(), &active);
+                    Factor::Dense(SlipJacobian::new(self.tangents(), &answers, None))
+                })
             }
-            (Linear::Dense(receptances), _) => Some(Factor::Dense(SlipJacobian::new(
-                self.tangents(),
-                receptances,
-                harmonics,
-                None,
-            ))),
+            (Linear::Dense(receptances), _) => {
+                let answers = Answers::new(receptances, harmonics);
+                Some(Factor::Dense(SlipJacobian::new(self.tangents(), &answers, None)))
+            }
             _ => None,
         };
     }
@@ -106,7 +111,8 @@ impl Condensed<'_> {
         let (harmonics, loads) = (self.table.harmonics(), self.tangents());
         let (step, sign) = match &self.linear {
             Linear::Dense(receptances) => {
-                let factors = SlipJacobian::new(loads, receptances, harmonics, Some(&border));
+                let answers = Answers::new(receptances, harmonics);
+                let factors = SlipJacobian::new(loads, &answers, Some(&border));
                 let answer = |q: &[f64], out: &mut [f64]| self.add_response(q, out);
                 let solved = factors.solve_bordered(loads, answer, &border, right);
                 self.profile.factorisations += 1;
@@ -128,11 +134,15 @@ impl Condensed<'_> {
 
     /// The contacts that yield, as products with the modes see them.
     fn krylov_newton(&self) -> KrylovNewton {
-        let active: Vec<usize> = (self.loads.iter().zip(self.model.points()))
+        KrylovNewton::new(self.model.compliance(), &self.active_points())
+    }
+
+    /// Points of the contacts that yield.
+    fn active_points(&self) -> Vec<usize> {
+        (self.loads.iter().zip(self.model.points()))
             .filter(|(load, _)| load.active)
             .flat_map(|(_, points)| points.clone())
-            .collect();
-        KrylovNewton::new(self.model.compliance(), &active)
+            .collect()
     }
 
     fn products<'b>(&'b self, modes: &'b ContactModes, orders: &'b ModalOrders) -> Products<'b> {

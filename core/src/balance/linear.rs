@@ -3,16 +3,14 @@
 
 use super::krylov_newton::KrylovNewton;
 use super::modal_work::suits;
+use super::ring_answers::RingAnswers;
 use super::ring_newton::RingNewton;
 use super::slip_jacobian::SlipJacobian;
 use super::unknowns::{gather, scatter};
 use crate::fourier::{Harmonics, SampleTable};
-use crate::structure::{
-    Compliance, ContactModes, ModalOrders, Quantity, Receptance, Request, RingOrder,
-};
+use crate::structure::{Compliance, ContactModes, ModalOrders, Quantity, Receptance, Request};
 use crate::Error;
 use faer::{c64, Mat, MatRef};
-use std::sync::Arc;
 
 /// Tolerance of what the damping couples, where nothing corrects it.
 const EXACT: f64 = 1e-14;
@@ -26,7 +24,7 @@ pub(super) enum Linear {
     /// Sectors coupled to their neighbours.
     Ring {
         /// Empty until a frequency is set.
-        orders: Vec<Arc<RingOrder>>,
+        orders: Vec<RingAnswers>,
         /// Whether derivatives in ω are wanted.
         slopes: bool,
     },
@@ -104,16 +102,17 @@ impl Linear {
             Self::Ring { orders, slopes } => {
                 orders.clear();
                 let Some(ring) = compliance.ring() else { return Ok(()) };
-                let rest = vec![c64::new(0.0, 0.0); compliance.contacts()];
                 for order in harmonics.orders() {
-                    let equations = match position(order) {
-                        Some((Self::Ring { orders, .. }, index)) => Arc::clone(&orders[index]),
-                        _ => Arc::new(
-                            ring.order(order, omega, *slopes).map_err(|error| (order, error))?,
-                        ),
+                    let answers = match position(order) {
+                        Some((Self::Ring { orders, .. }, index)) => orders[index].clone(),
+                        _ => {
+                            let equations = ring.order(order, omega, *slopes);
+                            let equations = equations.map_err(|error| (order, error))?;
+                            RingAnswers::new(equations, compliance.contacts())
+                        }
                     };
-                    scatter(harmonics, order, &equations.respond(true, &rest).contact, stuck);
-                    orders.push(equations);
+                    scatter(harmonics, order, answers.loaded(), stuck);
+                    orders.push(answers);
                 }
             }
         }
@@ -158,7 +157,10 @@ impl Linear {
         }
         match (self, compliance.ring()) {
             (Self::Ring { orders, .. }, Some(ring)) => {
-                ring.displacement_of(&orders[index], request, out)
+                let answers = &orders[index];
+                let loaded = request.quantity != Quantity::OfSlip;
+                let motion = answers.motion(loaded, request.slip_load);
+                ring.displacement_of(answers.order(), &motion, request, out)
             }
             _ => compliance.displacement(request, out),
         }
@@ -184,9 +186,9 @@ impl Linear {
             }
             Self::Ring { orders, .. } => {
                 let mut q = Vec::new();
-                for (equations, order) in orders.iter().zip(harmonics.orders()) {
+                for (answers, order) in orders.iter().zip(harmonics.orders()) {
                     gather(harmonics, order, slip_load, &mut q);
-                    add(harmonics, order, &equations.respond(false, &q).contact, out);
+                    add(harmonics, order, &answers.motion(false, &q).contact, out);
                 }
             }
         }
@@ -221,10 +223,10 @@ impl Linear {
             }
             Self::Ring { orders, .. } => {
                 let mut q = Vec::new();
-                for (equations, order) in orders.iter().zip(harmonics.orders()) {
+                for (answers, order) in orders.iter().zip(harmonics.orders()) {
                     gather(harmonics, order, slip_load, &mut q);
-                    let motion = equations.respond(true, &q);
-                    let rate = equations.respond_rate(true, &motion);
+                    let motion = answers.motion(true, &q);
+                    let rate = answers.order().respond_rate(true, &motion);
                     add(harmonics, order, &rate.contact, out);
                 }
             }

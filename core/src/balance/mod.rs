@@ -26,6 +26,7 @@ mod peak;
 mod price;
 
 mod resolution_control;
+mod ring_answers;
 mod ring_newton;
 mod ring_series;
 mod sampling;

@@ -11,8 +11,9 @@
 
 use super::ring_series::{Part, RingSeries};
 use crate::contact::SlipLoad;
+use crate::fourier::Harmonics;
 use crate::solve::{Block, BlockFactors, BlockRow, CyclicTridiagonal};
-use crate::structure::RingLayout;
+use crate::structure::{Ring, RingLayout};
 use std::ops::Range;
 
 /// Factors of `I − G ∂Q` for a ring.
@@ -41,6 +42,16 @@ struct Sector {
 }
 
 impl RingNewton {
+    /// Whether to eliminate sector after sector is less work than to solve in the slip loads of the
+    /// points that yield, with what a load at each of them moves. Both as measured \[ns\].
+    pub(super) fn suits(ring: &Ring, harmonics: &Harmonics, active: usize) -> bool {
+        let (sectors, ports) = (ring.sectors() as f64, ring.layout().ports() as f64);
+        let (slots, orders) = (harmonics.slots() as f64, harmonics.orders().count() as f64);
+        let eliminated = sectors * (800.0 + 0.2 * (ports * slots).powi(3));
+        let answers = active as f64 * orders * sectors * (40.0 + 10.0 * ports.powi(2));
+        answers + 0.06 * (active as f64 * slots).powi(3) > eliminated
+    }
+
     /// Factors the system at the tangents of the laws; `points` are the points of each contact.
     pub(super) fn new(
         series: RingSeries<'_>,

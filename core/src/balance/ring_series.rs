@@ -1,16 +1,16 @@
 //! Receptances and links of a ring as matrices on the real coefficients of series: block-diagonal
 //! in the harmonics, which products with them make use of.
 
+use super::ring_answers::RingAnswers;
 use crate::fourier::Harmonics;
 use crate::solve::Block;
 use crate::structure::RingOrder;
 use faer::c64;
-use std::sync::Arc;
 
 /// The harmonics of a ring.
 #[derive(Clone, Copy)]
 pub(super) struct RingSeries<'a> {
-    orders: &'a [Arc<RingOrder>],
+    orders: &'a [RingAnswers],
     harmonics: &'a Harmonics,
 }
 
@@ -23,7 +23,7 @@ pub(super) struct Part<'a> {
 }
 
 impl<'a> RingSeries<'a> {
-    pub(super) fn new(orders: &'a [Arc<RingOrder>], harmonics: &'a Harmonics) -> Self {
+    pub(super) fn new(orders: &'a [RingAnswers], harmonics: &'a Harmonics) -> Self {
         Self { orders, harmonics }
     }
 
@@ -32,7 +32,7 @@ impl<'a> RingSeries<'a> {
     }
 
     pub(super) fn sectors(&self) -> usize {
-        self.orders.first().map_or(0, |order| order.sectors())
+        self.orders.first().map_or(0, |order| order.order().sectors())
     }
 
     /// Every kept harmonic with the position of its first coefficient, and whether it has two.
@@ -40,7 +40,7 @@ impl<'a> RingSeries<'a> {
         let offset = self.harmonics.offset();
         self.orders.iter().enumerate().map(move |(index, order)| {
             let slot = if offset == 0 { 2 * index } else { (2 * index).saturating_sub(1) };
-            (order.as_ref(), slot, index >= offset)
+            (order.order(), slot, index >= offset)
         })
     }
 

@@ -12,6 +12,7 @@
 //! in them alone: often half as many unknowns, and one more where the frequency is unknown, too. The
 //! determinant is the same (Sylvester).
 
+use super::ring_answers::RingAnswers;
 use crate::contact::SlipLoad;
 use crate::fourier::Harmonics;
 use crate::solve::parity;
@@ -92,17 +93,11 @@ impl<'a> Loads<'a> {
 
 impl SlipJacobian {
     /// Assembles and factors the equations; nothing where ∂Q vanishes and nothing borders it.
-    pub(super) fn new(
-        of: Loads<'_>,
-        receptances: &[Receptance],
-        harmonics: &Harmonics,
-        border: Option<&Border<'_>>,
-    ) -> Self {
+    pub(super) fn new(of: Loads<'_>, answers: &Answers, border: Option<&Border<'_>>) -> Self {
         let (yielding, slots) = (of.yielding(), of.slots);
         let size = yielding.len() * slots;
         let total = size + usize::from(border.is_some());
         let mut transposed = Mat::<f64>::identity(total, total);
-        let answers = Answers::new(receptances, harmonics);
         for (r, one) in yielding.iter().enumerate() {
             let points = of.points[one.contact].clone();
             for (a, row) in of.rows(one.contact, one.local).enumerate() {
@@ -201,8 +196,10 @@ impl SlipJacobian {
 }
 
 /// Receptances, pair of points after pair and order after order.
-struct Answers {
-    contacts: usize,
+pub(super) struct Answers {
+    /// Position of each point among those whose receptances are known.
+    places: Vec<usize>,
+    known: usize,
     has_mean: bool,
     orders: usize,
     /// Real and imaginary parts in turn.
@@ -210,19 +207,42 @@ struct Answers {
 }
 
 impl Answers {
-    fn new(receptances: &[Receptance], harmonics: &Harmonics) -> Self {
+    /// Of all points.
+    pub(super) fn new(receptances: &[Receptance], harmonics: &Harmonics) -> Self {
         let pairs = receptances.first().map_or(0, |receptance| receptance.contact.len());
         let mut values = Vec::with_capacity(pairs * receptances.len());
         for pair in 0..pairs {
             values.extend(receptances.iter().map(|r| [r.contact[pair].re, r.contact[pair].im]));
         }
-        let contacts = pairs.isqrt();
-        Self { contacts, has_mean: harmonics.has_mean(), orders: receptances.len(), values }
+        let (known, orders) = (pairs.isqrt(), receptances.len());
+        let places = (0..known).collect();
+        Self { places, known, has_mean: harmonics.has_mean(), orders, values }
+    }
+
+    /// Of some points of a ring, which were asked for.
+    pub(super) fn of_ring(
+        orders: &[RingAnswers],
+        harmonics: &Harmonics,
+        contacts: usize,
+        points: &[usize],
+    ) -> Self {
+        let mut places = vec![usize::MAX; contacts];
+        points.iter().enumerate().for_each(|(place, point)| places[*point] = place);
+        let mut values = Vec::with_capacity(points.len().pow(2) * orders.len());
+        for source in points {
+            for point in points {
+                let answer = orders.iter().map(|order| order.between(*point, *source));
+                values.extend(answer.map(|g| [g.re, g.im]));
+            }
+        }
+        let (known, orders) = (points.len(), orders.len());
+        Self { places, known, has_mean: harmonics.has_mean(), orders, values }
     }
 
     /// Adds `factor row G` for the displacement of the one point by a slip load at the other.
     fn add(&self, [point, source]: [usize; 2], row: &[f64], factor: f64, out: &mut [f64]) {
-        let first = (source * self.contacts + point) * self.orders;
+        let [point, source] = [point, source].map(|point| self.places[point]);
+        let first = (source * self.known + point) * self.orders;
         let mut answers = &self.values[first..first + self.orders];
         let (mut row, mut out) = (row, out);
         if self.has_mean {

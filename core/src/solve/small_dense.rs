@@ -248,6 +248,9 @@ impl BlockFactors {
 
 /// Scalar product in four sums, which need not wait for each other.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
+    if a.len() < 4 {
+        return a.iter().zip(b).map(|(a, b)| a * b).sum();
+    }
     let mut sums = [0.0; 4];
     let (a, b) = (a.chunks_exact(4), b.chunks_exact(4));
     let left: f64 = a.remainder().iter().zip(b.remainder()).map(|(a, b)| a * b).sum();

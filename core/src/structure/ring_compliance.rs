@@ -7,22 +7,21 @@ use crate::Error;
 use faer::c64;
 
 impl Ring {
-    /// [`Compliance::displacement`] with the equations of this harmonic and frequency at hand; those
-    /// of a slope must have slopes.
+    /// [`Compliance::displacement`] with the equations of this harmonic and frequency and the motion
+    /// at hand; equations of a slope must have slopes.
     ///
     /// # Errors
     /// As [`Compliance::receptance`].
     pub fn displacement_of(
         &self,
         order: &RingOrder,
+        motion: &RingMotion,
         request: &Request<'_>,
         out: &mut [c64],
     ) -> Result<(), Error> {
-        let loaded = request.quantity != Quantity::OfSlip;
-        let motion = order.respond(loaded, request.slip_load);
-        self.observe(&motion, request, out)?;
+        self.observe(motion, request, out)?;
         if request.quantity == Quantity::Slope {
-            let rate = order.respond_rate(true, &motion);
+            let rate = order.respond_rate(true, motion);
             let mut moved = vec![c64::new(0.0, 0.0); out.len()];
             let of_rate = Request { quantity: Quantity::OfSlip, ..*request };
             self.observe(&rate, &of_rate, &mut moved)?;
@@ -39,16 +38,21 @@ impl Ring {
         out: &mut [c64],
     ) -> Result<(), Error> {
         let (ports, dofs) = (self.layout.ports(), self.layout.dofs);
-        for (x, &dof) in out.iter_mut().zip(request.observe) {
-            let sector = dof / dofs;
+        let (mut observe, mut rest) = (Vec::new(), out);
+        for together in request.observe.chunk_by(|one, next| one / dofs == next / dofs) {
+            let sector = together[0] / dofs;
             let range = sector * ports..(sector + 1) * ports;
+            observe.clear();
+            observe.extend(together.iter().map(|dof| dof % dofs));
             let own = Request {
                 contact: &motion.port[range.clone()],
                 slip_load: &motion.force[range],
-                observe: &[dof % dofs],
+                observe: &observe,
                 ..*request
             };
-            self.sectors[sector].displacement(&own, std::slice::from_mut(x))?;
+            let (here, others) = rest.split_at_mut(together.len());
+            self.sectors[sector].displacement(&own, here)?;
+            rest = others;
         }
         Ok(())
     }
@@ -115,7 +119,9 @@ impl Compliance for Ring {
     fn displacement(&self, request: &Request<'_>, out: &mut [c64]) -> Result<(), Error> {
         let slopes = request.quantity == Quantity::Slope;
         let order = self.order(request.harmonic, request.omega, slopes)?;
-        self.displacement_of(&order, request, out)
+        let loaded = request.quantity != Quantity::OfSlip;
+        let motion = order.respond(loaded, request.slip_load);
+        self.displacement_of(&order, &motion, request, out)
     }
 
     fn stuck_frequencies(&self) -> &[f64] {

@@ -68,6 +68,13 @@ impl RingOrder {
         self.layout.ports()
     }
 
+    /// Whether external loads act.
+    #[must_use]
+    pub fn is_loaded(&self) -> bool {
+        let zero = c64::new(0.0, 0.0);
+        self.receptances.iter().flat_map(|sector| &sector.stuck).any(|u| *u != zero)
+    }
+
     /// Receptance of the ports of a sector, column after column, and its response to its loads.
     #[must_use]
     pub fn sector(&self, index: usize) -> &Receptance {

@@ -28,7 +28,7 @@ impl Spectrum {
                 // An undamped mode of the free base met exactly is no resonance of the stuck
                 // structure, but leaves 0/0. A floor ε on the denominator costs a relative error ε
                 // and a cancellation 1e-16/ε: least at the square root of rounding.
-                if denominator.norm() < floor * squared {
+                if *floor > 0.0 && denominator.norm() < floor * squared {
                     denominator = c64::new(0.0, floor * squared);
                 }
                 let weight = denominator.inv();
