@@ -12,6 +12,7 @@
 
 use super::condensed::Condensed;
 use super::modal_work::{of_step, suits};
+use super::ring_newton::RingNewton;
 use super::solution::Point;
 use super::unknowns::Unknowns;
 use crate::contact::{Residual, Samples, SlipLoad};
@@ -143,14 +144,13 @@ impl Effort<'_> {
         let slots = if self.half_wave { 2 * highest.div_ceil(2) } else { 2 * highest + 1 } as f64;
         let compliance = self.model.compliance();
         let (contacts, slipping) = (compliance.contacts() as f64, self.slipping as f64);
-        // Every law looks for turning points; one that slips integrates and fills its tangent.
-        let laws = contacts * (600.0 + 40.0 * slots)
+        // Every law looks for turning points, unless amplitudes alone show that it sticks, as nearly all
+        // of a ring do; one that slips integrates and fills its tangent.
+        let looks = if compliance.ring().is_some() { slipping } else { contacts };
+        let laws = looks * (600.0 + 40.0 * slots)
             + slipping * (600.0 + 80.0 * slots + 2.5 * slots.powi(2));
         let linear = match compliance.ring() {
-            Some(ring) => {
-                let ports = ring.layout().ports() as f64;
-                ring.sectors() as f64 * (1e3 + 0.4 * (ports * slots).powi(3))
-            }
+            Some(ring) => RingNewton::effort(ring, slots, slipping),
             None if self.is_of_many(highest) => of_step(compliance, slots, slipping),
             None => 1e3 + 100.0 * slipping * slots + 0.06 * (slipping * slots).powi(3),
         };

@@ -80,7 +80,7 @@ impl Condensed<'_> {
         self.factor = match (&mut self.linear, compliance.ring()) {
             (Linear::Modal(_), _) => Some(Factor::Krylov(self.krylov_newton())),
             (Linear::Ring { orders, .. }, Some(ring)) => {
-                Some(if RingNewton::suits(ring, harmonics, active.len()) {
+                Some(if RingNewton::suits(ring, harmonics.slots(), active.len()) {
                     Factor::Ring(Box::new(RingNewton::new(
                         RingSeries::new(orders, harmonics),
                         ring.layout(),

@@ -11,7 +11,6 @@
 
 use super::ring_series::{Part, RingSeries};
 use crate::contact::SlipLoad;
-use crate::fourier::Harmonics;
 use crate::solve::{Block, BlockFactors, BlockRow, CyclicTridiagonal};
 use crate::structure::{Ring, RingLayout};
 use std::ops::Range;
@@ -43,13 +42,25 @@ struct Sector {
 
 impl RingNewton {
     /// Whether to eliminate sector after sector is less work than to solve in the slip loads of the
-    /// points that yield, with what a load at each of them moves. Both as measured \[ns\].
-    pub(super) fn suits(ring: &Ring, harmonics: &Harmonics, active: usize) -> bool {
+    /// points that yield, with what a load at each of them moves.
+    pub(super) fn suits(ring: &Ring, slots: usize, active: usize) -> bool {
+        let [eliminated, answers] = Self::efforts(ring, slots as f64, active as f64);
+        eliminated < answers
+    }
+
+    /// About the time of a Newton step, as measured \[ns\].
+    pub(super) fn effort(ring: &Ring, slots: f64, active: f64) -> f64 {
+        let [eliminated, answers] = Self::efforts(ring, slots, active);
+        eliminated.min(answers)
+    }
+
+    fn efforts(ring: &Ring, slots: f64, active: f64) -> [f64; 2] {
         let (sectors, ports) = (ring.sectors() as f64, ring.layout().ports() as f64);
-        let (slots, orders) = (harmonics.slots() as f64, harmonics.orders().count() as f64);
-        let eliminated = sectors * (800.0 + 0.2 * (ports * slots).powi(3));
-        let answers = active as f64 * orders * sectors * (40.0 + 10.0 * ports.powi(2));
-        answers + 0.06 * (active as f64 * slots).powi(3) > eliminated
+        let answers = active * sectors * slots * (20.0 + 5.0 * ports.powi(2));
+        [
+            sectors * (800.0 + 0.2 * (ports * slots).powi(3)),
+            1e3 + answers + 0.06 * (active * slots).powi(3),
+        ]
     }
 
     /// Factors the system at the tangents of the laws; `points` are the points of each contact.

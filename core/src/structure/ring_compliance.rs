@@ -73,7 +73,7 @@ impl Compliance for Ring {
         self.sectors.iter().fold([0.0; 2], |[receptance, displacement], sector| {
             let own = sector.effort(each);
             // Each is eliminated from the ring, with two neighbours beside it.
-            [receptance + own[0] + 1e3 + 0.5 * interface.powi(3), displacement + own[1] + 1e3]
+            [receptance + own[0] + 1e3 + 0.5 * interface.powi(3), displacement + own[1] + 200.0]
         })
     }
 
