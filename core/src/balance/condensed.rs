@@ -47,6 +47,8 @@ pub struct Condensed<'a> {
     /// Sizes against which the motion of every point is accurate, at the unknowns whose tangents were
     /// evaluated last.
     pub(super) sizes: Vec<f64>,
+    /// Whether nothing holds the mean in the last direction that was asked for.
+    pub(super) free: bool,
     pub(super) profile: Profile,
 }
 
@@ -77,6 +79,7 @@ impl<'a> Condensed<'a> {
             interrupted: None,
             factor: None,
             sizes: Vec::new(),
+            free: false,
             profile: Profile::default(),
         }
     }

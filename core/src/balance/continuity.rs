@@ -60,7 +60,10 @@ impl ForcedBalance<'_> {
         guess: Option<&Unknowns>,
         point: &mut Point,
     ) -> Result<(), Error> {
-        let failed = matches!(point.status, PointStatus::Stalled | PointStatus::Singular);
+        let failed = matches!(
+            point.status,
+            PointStatus::Stalled | PointStatus::Singular | PointStatus::Free
+        );
         if !last.is_solved() || !(point.is_solved() || failed) || last.omega == point.omega {
             return Ok(());
         }

@@ -266,7 +266,9 @@ impl<'a> ForcedBalance<'a> {
         let orbit = has_failed(&report) && self.start_again(equations, omega, &mut x, &mut report);
         // Where harmonics are chosen an orbit is the answer.
         let answered = orbit && self.control.only_harmonics_climb();
-        let follows = samples.is_some() || self.follows();
+        // Where nothing holds the mean of many contacts, paths to the same motion take minutes.
+        let lost = report.outcome == Outcome::Singular && equations.is_lost();
+        let follows = (samples.is_some() || self.follows()) && !lost;
         if has_failed(&report) && !answered && patient && follows {
             self.profile.homotopies += 1;
             self.follow_paths(equations, &mut x, &mut report);
@@ -277,6 +279,7 @@ impl<'a> ForcedBalance<'a> {
             }
             Outcome::Converged => PointStatus::Converged,
             Outcome::Stalled => PointStatus::Stalled,
+            Outcome::Singular if equations.free => PointStatus::Free,
             Outcome::Singular => PointStatus::Singular,
         };
         let start = std::time::Instant::now();

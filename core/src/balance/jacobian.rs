@@ -9,6 +9,7 @@ use super::linear::{Factor, Linear};
 use super::ring_newton::RingNewton;
 use super::ring_series::RingSeries;
 use super::slip_jacobian::{Answers, Border, Loads, SlipJacobian};
+use super::statics::FREE;
 use crate::contact::SlipLoad;
 use crate::model::Model;
 use crate::solve::{norm, Parametrised, System};
@@ -135,6 +136,19 @@ impl Condensed<'_> {
     /// The contacts that yield, as products with the modes see them.
     fn krylov_newton(&self) -> KrylovNewton {
         KrylovNewton::new(self.model.compliance(), &self.active_points())
+    }
+
+    /// Whether a direction goes so far in the mean that nothing holds it, however far it goes.
+    fn leaves_mean_open(&self, step: &[f64]) -> bool {
+        let harmonics = self.table.harmonics();
+        let motion = self.sizes.iter().copied().fold(0.0, f64::max);
+        let mean = step.iter().step_by(harmonics.slots()).map(|mean| mean.abs());
+        harmonics.has_mean() && mean.fold(0.0, f64::max) > FREE * motion
+    }
+
+    /// Whether nothing holds the mean of many contacts in the last direction that was asked for.
+    pub(super) fn is_lost(&self) -> bool {
+        self.free && matches!(self.linear, Linear::Modal(_))
     }
 
     /// Points of the contacts that yield.
@@ -273,7 +287,8 @@ impl System for Condensed<'_> {
             _ => return false,
         }
         self.profile.linear_solve += start.elapsed();
-        step.iter().all(|s| s.is_finite())
+        self.free = self.leaves_mean_open(step);
+        !self.free && step.iter().all(|s| s.is_finite())
     }
 }
 

@@ -29,13 +29,19 @@ pub enum PointStatus {
     EffortLimit = 8,
     /// An exact orbit was not found within the steps of the flow that it is granted.
     StepsLimit = 7,
+    /// Not solved: at a motion on the way contacts yield until nothing holds the mean position of a
+    /// body that they alone hold.
+    Free = 9,
 }
 
 impl PointStatus {
     /// Whether the balance equations hold.
     #[must_use]
     pub fn is_solved(self) -> bool {
-        !matches!(self, Self::Stalled | Self::Singular | Self::NotComputed | Self::StepsLimit)
+        !matches!(
+            self,
+            Self::Stalled | Self::Singular | Self::Free | Self::NotComputed | Self::StepsLimit
+        )
     }
 }
 

@@ -25,7 +25,7 @@ const ITERATIONS: usize = 40;
 /// Change of the displacements, relative to them, at which a step is solved.
 const SOLVED: f64 = 1e-13;
 /// Displacements over those of the stuck structure beyond which nothing holds it.
-const FREE: f64 = 1e9;
+pub(super) const FREE: f64 = 1e9;
 
 /// How raising the static loads has ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

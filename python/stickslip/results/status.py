@@ -87,6 +87,13 @@ class Status(Ending):
         "raise tolerance, name in observe only the dofs that matter, give a number of harmonics, "
         "or condense light or nearly rigid dofs statically.",
     )
+    FREE = (
+        "free",
+        "Not solved: on the way contacts slip or open until nothing holds the mean position of a "
+        "body that they alone hold, and it may walk. Begin at an omega where they stick and take "
+        "small steps, ground the body, if softly, raise preload or friction, or see with transient "
+        "where it goes.",
+    )
 
     @property
     def solved(self) -> bool:

@@ -1,0 +1,49 @@
+"""Bodies that contacts alone hold: where these slip and open, nothing holds the mean."""
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+
+PLATES = 100
+
+
+def on_the_floor(ground: float) -> ss.Model:
+    """Plates linked in a row that stand on the floor; `ground` holds each of them, too [N/m]."""
+    link = 2.0 * np.eye(PLATES) - np.eye(PLATES, k=1) - np.eye(PLATES, k=-1)
+    link[0, 0] = link[-1, -1] = 1.0
+    names = [f"{way}{plate}" for way in "xz" for plate in range(PLATES)]
+    structure = ss.Structure(
+        mass=np.eye(2 * PLATES),
+        stiffness=np.kron(np.eye(2), 1e7 * link + ground * np.eye(PLATES)),
+        damping=ss.Rayleigh(mass=20.0, stiffness=0.0),
+        dofs=names,
+    )
+    floor = ss.Coulomb(
+        [[f"x{plate}", f"z{plate}"] for plate in range(PLATES)],
+        normal=[0.0, -1.0],
+        friction=0.3,
+        tangential_stiffness=1e4,
+        normal_stiffness=2e4,
+        preload=10.0,
+    )
+    shaken = [ss.Force(f"x{plate}", 10.0) for plate in range(PLATES)]
+    lifted = [ss.Force(f"z{plate}", 3.0, phase=-0.5) for plate in range(PLATES)]
+    return ss.Model(structure, [floor], [*shaken, *lifted])
+
+
+@pytest.mark.parametrize(("ground", "status"), [(0.0, "free"), (2e3, "converged")])
+def test_what_nothing_holds_is_said_at_once(ground: float, status: str) -> None:
+    frf = ss.forced_response(
+        on_the_floor(ground),
+        [110.0],
+        harmonics=3,
+        evaluation="marched",
+        samples=64,
+        stability=False,
+        observe=["x0"],
+    )
+    assert frf.status == (status,)
+    # It took thousands of evaluations, and the name was wrong.
+    assert frf.counters["evaluations"] < 100
+    assert np.isnan(frf.amplitude("x0")[0]) == (status == "free")
