@@ -9,6 +9,7 @@ mod resonances;
 mod slipping;
 mod variation;
 
+pub(crate) use flutter_model::is_biased;
 pub use flutter_model::{FlutterModel, NegativeDamping};
 pub(crate) use modal_basis::{ModalBases, ModalBasis};
 pub use resonances::Resonance;

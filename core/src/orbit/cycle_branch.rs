@@ -2,13 +2,15 @@
 
 use super::cycles::{relative, Cycle, CycleSettings, LimitCycles, Turn, RARE};
 use super::limit_cycle::{CycleOrbits, OrbitCurve};
-use super::orbit_postprocess::{odd_table, postprocess};
+use super::orbit_postprocess::postprocess;
 use super::quadrature::Quadrature;
 use super::sides::{extreme, joined, value, Sides};
-use super::stability::{judge, Judge, TRACING};
-use crate::balance::{CycleBalance, HarmonicChoice, Onset, Point, PointStatus, Progress};
-use crate::fourier::SampleTable;
-use crate::model::{FlutterModel, Model, NegativeDamping, Variation};
+use super::stability::{judge, judge_along, Judge, TRACING};
+use crate::balance::{
+    oscillation, with_history, CycleBalance, HarmonicChoice, Onset, Point, PointStatus, Progress,
+};
+use crate::fourier::{Harmonics, SampleTable};
+use crate::model::{is_biased, FlutterModel, Model, NegativeDamping, Variation};
 use crate::solve::{at_parameter, tangent, Bounds, Branch, Curve, End, Steps};
 use crate::timing::Profile;
 use crate::Error;
@@ -29,7 +31,7 @@ const ENDLESS: f64 = 1e5;
 ///
 /// # Errors
 /// Settings outside their range, a mode that is not excited or moves no contact, no limit cycle
-/// to begin with.
+/// to begin with, exact orbits of motions that are not symmetric.
 pub fn limit_cycles(
     model: &Model,
     negative: &NegativeDamping,
@@ -40,7 +42,13 @@ pub fn limit_cycles(
 ) -> Result<LimitCycles, Error> {
     settings.check()?;
     let begin = Instant::now();
+    let held = if is_biased(model) { with_history(model)? } else { None };
+    let model = held.as_ref().unwrap_or(model);
     let given = FlutterModel::new(model, negative.clone(), Variation::Ratio, ratio)?;
+    if settings.exact && !given.is_symmetric() {
+        let expected = "harmonic balance under static loads and where contacts open";
+        return Err(Error::shape("method", expected, "exact orbits"));
+    }
     let family = FlutterModel::new(model, negative.clone(), variation.clone(), ratio)?;
     let stopped = Cell::new(false);
     let share = Cell::new(0.0);
@@ -51,6 +59,7 @@ pub fn limit_cycles(
     let onset = Onset::new(&given, settings.mode, ratio)?;
     // Without orbits a balance goes without its stability.
     let orbits = match CycleOrbits::new(&family) {
+        _ if !family.is_symmetric() => None,
         Err(Error::NoEvents { .. }) if !settings.exact => None,
         orbits => orbits?,
     };
@@ -98,7 +107,7 @@ impl Finder<'_> {
         let scale = self.onset.mode.omega;
         let last = rungs.len() - 1;
         for (rung, &highest) in rungs.iter().enumerate() {
-            let table = odd_table(highest);
+            let table = self.table(highest);
             let sides = match self.follow_balance(&table, interrupted) {
                 Err(_) if rung < last => continue,
                 other => other?,
@@ -106,7 +115,7 @@ impl Finder<'_> {
             let start = sides.branch.points.first().cloned().unwrap_or_default();
             let mut curve = CycleBalance::new(self.family, &table, &start, interrupted);
             let selected = self.select(&mut curve, &sides);
-            let beyond = odd_table(highest + (highest / 2).max(4));
+            let beyond = self.table(highest + (highest / 2).max(4));
             let mut cycles = Vec::with_capacity(selected.len());
             let mut beyond_tolerance = 0;
             let mut ended = None;
@@ -151,6 +160,8 @@ impl Finder<'_> {
                 };
                 let starts = out.cycles.iter().map(start).collect();
                 judge(&self.judge(orbits, false), starts, &mut out, interrupted, share);
+            } else if settings.stability && !self.family.is_symmetric() {
+                judge_along(self.family, &mut out, interrupted, share);
             }
             return Ok(out);
         }
@@ -164,7 +175,7 @@ impl Finder<'_> {
         share: &Cell<f64>,
     ) -> Result<LimitCycles, Error> {
         let scale = self.onset.mode.omega;
-        let table = odd_table(START_HARMONICS);
+        let table = self.table(START_HARMONICS);
         let start = self.first(&table, interrupted)?;
         let of_ratio = CycleOrbits::new(&self.given)?.ok_or(Error::TravellingWave)?;
         let begin = {
@@ -177,9 +188,9 @@ impl Finder<'_> {
         };
         let mut of_ratio = OrbitCurve::new(&of_ratio, scale, &begin, interrupted);
         let mut curve = OrbitCurve::new(orbits, scale, &begin, interrupted);
-        let sides = self.follow(&mut of_ratio, &mut curve, begin)?;
+        let sides = self.follow(&mut of_ratio, &mut curve, begin, &crate::solve::norm)?;
         let selected = self.select(&mut curve, &sides);
-        let reported = odd_table(self.settings.reported);
+        let reported = self.table(self.settings.reported);
         let mut quadrature = Quadrature::default();
         let mut cycles = Vec::with_capacity(selected.len());
         let mut points = Vec::new();
@@ -213,6 +224,11 @@ impl Finder<'_> {
     fn judge<'b>(&self, orbits: &'b CycleOrbits<'b>, exact: bool) -> Judge<'b> {
         let whole = self.settings.values.is_none();
         Judge { orbits, scale: self.onset.mode.omega, exact, whole }
+    }
+
+    /// Samples of the harmonics that the motions have.
+    fn table(&self, highest: usize) -> SampleTable {
+        SampleTable::new(Harmonics::new(highest, self.family.is_symmetric()))
     }
 
     /// The first limit cycle in r, by harmonic balance.
@@ -255,21 +271,23 @@ impl Finder<'_> {
         let start = self.first(table, interrupted)?;
         let mut of_ratio = CycleBalance::new(&self.given, table, &start, interrupted);
         let mut curve = CycleBalance::new(self.family, table, &start, interrupted);
-        self.follow(&mut of_ratio, &mut curve, start)
+        let moved = |u: &[f64]| oscillation(table.harmonics(), u);
+        self.follow(&mut of_ratio, &mut curve, start, &moved)
     }
 
     /// Follows the branch: in r at once, or in r to the ratio asked for and from there to both
-    /// sides in the other scalar.
+    /// sides in the other scalar; `moved` is the size of the motion.
     fn follow(
         &self,
         of_ratio: &mut dyn Curve,
         curve: &mut dyn Curve,
         start: Vec<f64>,
+        moved: &dyn Fn(&[f64]) -> f64,
     ) -> Result<Sides, Error> {
         let settings = self.settings;
         let steps = Steps::default();
         // The mean over the states, however many there are.
-        let motion = |z: &[f64]| crate::solve::norm(&z[..z.len() - 2]) / (z.len() as f64).sqrt();
+        let motion = |z: &[f64]| moved(&z[..z.len() - 2]) / (z.len() as f64).sqrt();
         // A contact that slips little by little has its onset at next to nothing.
         let whole =
             if self.onset.whole > 1.0 { self.onset.amplitude * self.onset.whole } else { 0.0 };
@@ -280,7 +298,9 @@ impl Finder<'_> {
             let lowest = self.lowest_ratio().min(start[start.len() - 1]);
             let bounds =
                 Bounds { range: (lowest, settings.range.1), most: settings.most, ends: &endless };
-            let mut branch = Branch::continue_branch(curve, start, 1.0, steps, &bounds);
+            // Contacts that open may take damping off the mode at first.
+            let sign = if value(&start) < self.onset.ratio { -1.0 } else { 1.0 };
+            let mut branch = Branch::continue_branch(curve, start, sign, steps, &bounds);
             let limit = extreme(&branch, 1.0);
             let ends = [End::Range, branch.end];
             // What lies below the range served to get started.

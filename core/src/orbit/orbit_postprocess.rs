@@ -6,7 +6,7 @@ use super::quadrature::Quadrature;
 use super::survey::Survey;
 use crate::balance::{Point, PointStatus};
 use crate::contact::PointState;
-use crate::fourier::{Harmonics, SampleTable};
+use crate::fourier::SampleTable;
 use crate::motion::{Flow, FlowEvent, ModalSystem, State};
 use std::f64::consts::PI;
 
@@ -154,9 +154,4 @@ fn renew(state: &mut State, start: &State, side: f64) {
 fn mirror(state: &mut State) {
     state.parts().into_iter().flatten().for_each(|v| *v = -*v);
     state.points.iter_mut().for_each(|point| *point = point.mirrored());
-}
-
-/// Sample tables of odd harmonics.
-pub(super) fn odd_table(highest: usize) -> SampleTable {
-    SampleTable::new(Harmonics::new(highest, true))
 }

@@ -2,6 +2,8 @@
 
 use super::cycles::{Change, ChangeKind, LimitCycles};
 use super::limit_cycle::{CycleOrbits, OrbitCurve};
+use super::period_map::PeriodMap;
+use crate::model::FlutterModel;
 use crate::solve::{across, at_parameter, Curve as _};
 use faer::c64;
 use std::cell::Cell;
@@ -12,6 +14,10 @@ pub(super) const TRACING: f64 = 0.4;
 const ITERATIONS: usize = 12;
 /// Frequency of the exact orbit, relative to that of the balance it belongs to.
 const SAME: f64 = 0.02;
+/// Error of the multipliers of a map, …
+const MAPPED: f64 = 1e-6;
+/// … and distance of the largest from 1 that decides, in errors.
+const DECIDES: f64 = 3.0;
 /// Halvings of the interval in which stability changes.
 const HALVINGS: usize = 26;
 /// Change of the modulus of a multiplier across an interval this short that is a jump.
@@ -111,6 +117,41 @@ pub(super) fn judge(
         if a != b && !interrupted() {
             out.changes.push(change(&mut curve, before, after, *at));
         }
+    }
+}
+
+/// Multipliers of cycles without symmetry, by the map over a period that is linearised along the
+/// balance. They stay unknown where contacts touch their limit, and where the map does not tell on which
+/// side of 1 the largest lies: that of the phase, which has to be 1, says how far to trust it.
+pub(super) fn judge_along(
+    family: &FlutterModel<'_>,
+    out: &mut LimitCycles,
+    interrupted: &dyn Fn() -> bool,
+    share: &Cell<f64>,
+) {
+    let Some(negative) = family.negative() else { return };
+    let total = out.cycles.len() as f64;
+    for (index, cycle) in out.cycles.iter_mut().enumerate() {
+        share.set(TRACING + (1.0 - TRACING) * index as f64 / total);
+        if interrupted() {
+            return;
+        }
+        let Ok(model) = family.at(cycle.value) else { continue };
+        let damping = model.structure().damping() + faer::Scale(cycle.ratio) * negative;
+        let Ok(map) = PeriodMap::damped(&model, damping.as_ref()) else { continue };
+        let map = map.assuming(family.residual());
+        let Some(motion) = cycle.response.unknowns() else { continue };
+        let found = map.multipliers(cycle.response.omega, motion, Some(MAPPED));
+        let Some(mut values) = found.map(|found| found.values) else { continue };
+        let off = |m: &c64| (m - c64::new(1.0, 0.0)).norm();
+        let phase = (0..values.len()).min_by(|&i, &j| off(&values[i]).total_cmp(&off(&values[j])));
+        let Some(phase) = phase.map(|at| values.remove(at)) else { continue };
+        let largest = values.first().map_or(0.0, |m| m.norm());
+        if (largest - 1.0).abs() <= DECIDES * off(&phase).max(MAPPED) {
+            continue;
+        }
+        values.resize(cycle.multipliers.len(), c64::new(0.0, 0.0));
+        cycle.multipliers = values;
     }
 }
 
