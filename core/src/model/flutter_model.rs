@@ -79,7 +79,7 @@ impl<'a> FlutterModel<'a> {
             return Err(Error::value("level", ratio, remedy));
         }
         let changes = variation.changes(model)?;
-        let symmetric = !is_biased(model);
+        let symmetric = !model.is_biased();
         let loads = if symmetric { Vec::new() } else { static_loads(model) };
         if !changes.is_empty() && !loads.is_empty() {
             let remedy = "what friction keeps of static loads changes with it; follow r";
@@ -195,15 +195,8 @@ impl<'a> FlutterModel<'a> {
     }
 }
 
-/// Whether what contacts do depends on the state at rest: a law is not odd, or a static load holds one
-/// without memory off its middle. Friction under constant loads moves with the rest.
-pub(crate) fn is_biased(model: &Model) -> bool {
-    let elastic = || model.laws().iter().any(|law| law.state_size() == 0);
-    model.laws().iter().any(|law| !law.is_odd()) || (elastic() && !static_loads(model).is_empty())
-}
-
 /// The static loads of a model.
-fn static_loads(model: &Model) -> Vec<HarmonicLoad> {
+pub(super) fn static_loads(model: &Model) -> Vec<HarmonicLoad> {
     let acts = |load: &&HarmonicLoad| {
         load.harmonic == 0 && load.amplitude.iter().any(|force| force.norm() > 0.0)
     };

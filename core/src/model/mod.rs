@@ -9,7 +9,6 @@ mod resonances;
 mod slipping;
 mod variation;
 
-pub(crate) use flutter_model::is_biased;
 pub use flutter_model::{FlutterModel, NegativeDamping};
 pub(crate) use modal_basis::{ModalBases, ModalBasis};
 pub use resonances::Resonance;
@@ -285,6 +284,16 @@ impl Model {
     #[must_use]
     pub fn is_monotone(&self) -> bool {
         self.laws.iter().all(|law| law.is_monotone())
+    }
+
+    /// Whether what contacts do in free motions depends on the state at rest: a law is not odd, or a
+    /// static load holds one without memory off its middle. Friction under constant loads moves with
+    /// the rest.
+    #[must_use]
+    pub fn is_biased(&self) -> bool {
+        let elastic = || self.laws.iter().any(|law| law.state_size() == 0);
+        let loaded = || !flutter_model::static_loads(self).is_empty();
+        self.laws.iter().any(|law| !law.is_odd()) || (elastic() && loaded())
     }
 
     /// Whether the motion has half-wave symmetry: odd laws under odd harmonics alone.

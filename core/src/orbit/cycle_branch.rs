@@ -10,7 +10,7 @@ use crate::balance::{
     oscillation, with_history, CycleBalance, HarmonicChoice, Onset, Point, PointStatus, Progress,
 };
 use crate::fourier::{Harmonics, SampleTable};
-use crate::model::{is_biased, FlutterModel, Model, NegativeDamping, Variation};
+use crate::model::{FlutterModel, Model, NegativeDamping, Variation};
 use crate::solve::{at_parameter, tangent, Bounds, Branch, Curve, End, Steps};
 use crate::timing::Profile;
 use crate::Error;
@@ -31,7 +31,7 @@ const ENDLESS: f64 = 1e5;
 ///
 /// # Errors
 /// Settings outside their range, a mode that is not excited or moves no contact, no limit cycle
-/// to begin with, exact orbits of motions that are not symmetric.
+/// to begin with.
 pub fn limit_cycles(
     model: &Model,
     negative: &NegativeDamping,
@@ -42,13 +42,9 @@ pub fn limit_cycles(
 ) -> Result<LimitCycles, Error> {
     settings.check()?;
     let begin = Instant::now();
-    let held = if is_biased(model) { with_history(model)? } else { None };
+    let held = if model.is_biased() { with_history(model)? } else { None };
     let model = held.as_ref().unwrap_or(model);
     let given = FlutterModel::new(model, negative.clone(), Variation::Ratio, ratio)?;
-    if settings.exact && !given.is_symmetric() {
-        let expected = "harmonic balance under static loads and where contacts open";
-        return Err(Error::shape("method", expected, "exact orbits"));
-    }
     let family = FlutterModel::new(model, negative.clone(), variation.clone(), ratio)?;
     let stopped = Cell::new(false);
     let share = Cell::new(0.0);
@@ -59,7 +55,6 @@ pub fn limit_cycles(
     let onset = Onset::new(&given, settings.mode, ratio)?;
     // Without orbits a balance goes without its stability.
     let orbits = match CycleOrbits::new(&family) {
-        _ if !family.is_symmetric() => None,
         Err(Error::NoEvents { .. }) if !settings.exact => None,
         orbits => orbits?,
     };

@@ -29,8 +29,10 @@ const REAL: f64 = 1e-6;
 #[derive(Debug, Clone)]
 pub(super) struct Floquet {
     pub(super) z: Vec<f64>,
-    /// Over half a period, mirrored, by falling modulus.
-    pub(super) half: Vec<c64>,
+    /// Over half a period, mirrored, or over a whole one of no symmetry, by falling modulus.
+    pub(super) span: Vec<c64>,
+    /// Whether it is half a period.
+    symmetric: bool,
     pub(super) neutral: usize,
     /// Whether the orbit is exact.
     pub(super) closed: bool,
@@ -50,18 +52,19 @@ impl Floquet {
 
     /// Of the orbit at a point of a curve.
     pub(super) fn of(curve: &OrbitCurve<'_>, z: Vec<f64>, closed: bool) -> Option<Self> {
-        let (half, neutral) = curve.multipliers(&z)?;
-        Some(Self { z, half, neutral, closed })
+        let (span, neutral) = curve.multipliers(&z)?;
+        Some(Self { z, span, symmetric: curve.is_symmetric(), neutral, closed })
     }
 
     /// Over the full period, those of contacts that never slip first.
     pub(super) fn multipliers(&self) -> Vec<c64> {
         let ones = std::iter::repeat_n(c64::new(1.0, 0.0), self.neutral);
-        ones.chain(self.half.iter().map(|m| m * m)).collect()
+        let whole = |m: &c64| if self.symmetric { m * m } else { *m };
+        ones.chain(self.span.iter().map(whole)).collect()
     }
 
     fn unstable(&self) -> usize {
-        self.half.iter().filter(|m| m.norm() >= 1.0).count()
+        self.span.iter().filter(|m| m.norm() >= 1.0).count()
     }
 }
 
@@ -113,7 +116,7 @@ pub(super) fn judge(
     }
     for pair in known.windows(2) {
         let [(at, before), (_, after)] = pair else { continue };
-        let [a, b] = [before, after].map(|f| f.half.iter().filter(|m| m.norm() >= 1.0).count());
+        let [a, b] = [before, after].map(Floquet::unstable);
         if a != b && !interrupted() {
             out.changes.push(change(&mut curve, before, after, *at));
         }
@@ -195,7 +198,7 @@ fn change(
 fn kind(low: &Floquet, high: &Floquet) -> ChangeKind {
     let off = |m: &c64| (m.norm() - 1.0).abs();
     let critical =
-        |orbit: &Floquet| orbit.half.iter().copied().min_by(|a, b| off(a).total_cmp(&off(b)));
+        |orbit: &Floquet| orbit.span.iter().copied().min_by(|a, b| off(a).total_cmp(&off(b)));
     let (Some(a), Some(b)) = (critical(low), critical(high)) else { return ChangeKind::Grazing };
     if off(&a).max(off(&b)) > JUMP {
         return ChangeKind::Grazing;
@@ -203,8 +206,10 @@ fn kind(low: &Floquet, high: &Floquet) -> ChangeKind {
     let angle = b.arg().abs();
     if angle < REAL {
         ChangeKind::Fold
-    } else if angle > std::f64::consts::PI - REAL {
+    } else if angle > std::f64::consts::PI - REAL && low.symmetric {
         ChangeKind::Symmetry
+    } else if angle > std::f64::consts::PI - REAL {
+        ChangeKind::PeriodDoubling
     } else {
         ChangeKind::ComplexPair
     }
