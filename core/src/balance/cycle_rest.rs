@@ -28,8 +28,11 @@ const LEAVES: f64 = 1e-6;
 const DECADES: i32 = 40;
 /// Halvings of the decade in which the contacts leave their state.
 const HALVINGS: usize = 40;
-/// Amplitudes, relative to that, at which a first motion is looked for.
-const BEYOND: [f64; 9] = [1.1, 1.02, 1.3, 1.003, 2.0, 1.5, 3.0, 5.0, 1.0003];
+/// Amplitudes beyond that, relative to it, at which a first motion is looked for: those first at which
+/// receptances are far from their resonance, …
+const BEYOND: [f64; 11] = [0.1, 0.3, 0.03, 0.01, 0.7, 1.5, 3e-3, 1e-3, 3e-4, 4.0, 1e-4];
+/// … among ratios r that are as close to the one asked for, relative to it, as this.
+const CLOSE: f64 = 5e-3;
 /// Part of that motion along which Newton's method may not change it.
 const STEP: f64 = 0.1;
 
@@ -167,27 +170,32 @@ impl Equilibrium {
         Some(high)
     }
 
-    /// A limit cycle a little beyond the `amplitude` at which contacts leave their state at rest: by the
-    /// balance of the work in the fundamental, then by Newton's method at that amplitude. Unknowns of
-    /// [`CycleBalance`]; nothing if it finds none.
+    /// A limit cycle beyond the `amplitude` at which contacts leave their state at rest, as near to the
+    /// ratio r as may be: by the balance of the work in the fundamental, then by Newton's method at an
+    /// amplitude. Unknowns of [`CycleBalance`]; nothing if it finds none.
     pub(super) fn first_point(
         &self,
         family: &FlutterModel<'_>,
         table: &SampleTable,
         mode: &StuckMode,
-        amplitude: f64,
+        [amplitude, ratio]: [f64; 2],
         interrupted: &dyn Fn() -> bool,
     ) -> Option<Vec<f64>> {
-        BEYOND.iter().find_map(|factor| {
-            if interrupted() {
-                return None;
-            }
-            let amplitude = factor * amplitude;
+        let guess = |beyond: &f64| {
+            let amplitude = (1.0 + beyond) * amplitude;
             let excess = self.excess(family, 1.0, table, mode, amplitude)?;
             let work: c64 = mode.contact.iter().zip(&excess).map(|(u, q)| u.conj() * q).sum();
             let work = work / amplitude;
             let omega = (mode.omega * mode.omega - work.re).max(0.0).sqrt();
-            let ratio = (work.im / omega - mode.damping) / mode.negative;
+            Some([amplitude, omega, (work.im / omega - mode.damping) / mode.negative])
+        };
+        let mut guesses: Vec<[f64; 3]> = BEYOND.iter().filter_map(guess).collect();
+        let off = |guess: &[f64; 3]| (guess[2] - ratio).abs().max(CLOSE * ratio);
+        guesses.sort_by(|a, b| off(a).total_cmp(&off(b)));
+        guesses.into_iter().find_map(|[amplitude, omega, ratio]| {
+            if interrupted() {
+                return None;
+            }
             let mut guess = self.motion(table.harmonics(), mode, amplitude);
             guess.extend([omega, ratio]);
             // The amplitude is held by what comes before it.

@@ -156,7 +156,8 @@ impl Onset {
         interrupted: &dyn Fn() -> bool,
     ) -> Option<Vec<f64>> {
         if let Some(rest) = &self.rest {
-            return rest.first_point(family, table, &self.mode, self.amplitude, interrupted);
+            let wanted = [self.amplitude, ratio];
+            return rest.first_point(family, table, &self.mode, wanted, interrupted);
         }
         for share in NEARER {
             for factor in [1.0, 0.7, 1.5, 0.3, 3.0] {

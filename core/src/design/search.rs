@@ -11,7 +11,7 @@ use super::envelope::{is_shortest, Envelope, Gap};
 use super::first_look::{Aim, Candidate, FirstLook, SEEN};
 use super::interpolant::Knot;
 use super::samples::{predicted, Sample};
-use crate::balance::{ForcedBalance, Linearised, PointStatus, Unknowns};
+use crate::balance::{ForcedBalance, Linearised, Point, PointStatus, Unknowns};
 use crate::contact::Residual;
 use crate::Error;
 
@@ -52,7 +52,7 @@ pub(super) struct Doubt {
 }
 
 impl Doubt {
-    fn unsolved(status: PointStatus) -> Self {
+    pub(super) fn unsolved(status: PointStatus) -> Self {
         Self { status, at: f64::NAN }
     }
 
@@ -285,6 +285,14 @@ impl<'a, 'b> Search<'a, 'b> {
             }
             solved => solved?,
         };
+        self.sampled(&point)
+    }
+
+    /// A point with its slopes; nothing of one without a solution.
+    ///
+    /// # Errors
+    /// As for a solution at one frequency.
+    pub(super) fn sampled(&mut self, point: &Point) -> Result<Option<Sample>, Error> {
         let (Some(unknowns), true) = (point.unknowns(), point.is_solved()) else {
             self.failure = Some(point.status);
             return Ok(None);

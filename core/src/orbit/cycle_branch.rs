@@ -293,8 +293,7 @@ impl Finder<'_> {
             let lowest = self.lowest_ratio().min(start[start.len() - 1]);
             let bounds =
                 Bounds { range: (lowest, settings.range.1), most: settings.most, ends: &endless };
-            // Contacts that open may take damping off the mode at first.
-            let sign = if value(&start) < self.onset.ratio { -1.0 } else { 1.0 };
+            let sign = if self.family.is_symmetric() { 1.0 } else { rising(curve, &start, moved) };
             let mut branch = Branch::continue_branch(curve, start, sign, steps, &bounds);
             let limit = extreme(&branch, 1.0);
             let ends = [End::Range, branch.end];
@@ -403,5 +402,24 @@ impl Finder<'_> {
             interrupted: false,
             profile: Profile::default(),
         }
+    }
+}
+
+/// Direction in the scalar in which motions grow: contacts that open may take damping off a mode, or leave
+/// it as it is.
+fn rising(curve: &mut dyn Curve, z: &[f64], moved: &dyn Fn(&[f64]) -> f64) -> f64 {
+    let weights = curve.weights(z);
+    let mut ahead = vec![0.0; z.len()];
+    ahead[z.len() - 1] = 1.0;
+    let Some(along) = tangent(curve, z, &weights, &ahead) else { return 1.0 };
+    let motion = |share: f64| -> f64 {
+        let there = z.iter().zip(&along).map(|(z, way)| z + share * way);
+        moved(&there.take(z.len() - 2).collect::<Vec<f64>>())
+    };
+    let grows = motion(1e-6) > motion(-1e-6);
+    if grows == (value(&along) > 0.0) {
+        1.0
+    } else {
+        -1.0
     }
 }
