@@ -4,7 +4,7 @@
 use super::first_look::{Aim, FirstLook, Precision};
 use super::samples::Sample;
 use super::search::{Found, Search};
-use super::upper_branch::{higher, is_torn};
+use super::upper_branch::nearer;
 use crate::balance::{
     Evaluation, ForcedBalance, HarmonicChoice, PointStatus, Progress, Resolution, Settings,
     WarmStart,
@@ -251,7 +251,7 @@ impl<'a> PeakSearch<'a> {
     fn search(&mut self, model: &Model, resolution: Resolution) -> Result<Option<Found>, Error> {
         let seeds = std::mem::take(&mut self.seeds);
         let Some(found) = self.search_from(model, resolution, &seeds)? else { return Ok(None) };
-        let sure = found.tops.iter().all(Result::is_ok) && !is_torn(&found.samples);
+        let sure = found.tops.iter().all(Result::is_ok) && !found.torn;
         if model.is_monotone() || sure {
             return Ok(Some(found));
         }
@@ -259,7 +259,7 @@ impl<'a> PeakSearch<'a> {
             return Ok((!self.is_ended()).then_some(found));
         };
         let again = self.search_from(model, resolution, &largest)?;
-        Ok(again.map(|again| higher(found, again, &heights)))
+        Ok(again.map(|again| nearer(found, again, &heights)))
     }
 
     fn is_ended(&self) -> bool {

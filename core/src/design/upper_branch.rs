@@ -1,7 +1,8 @@
 //! The highest of several motions at a frequency.
 //!
-//! Where laws are not monotone, a point solved by itself may be any of them. Samples that no one smooth
-//! curve goes through, or a search without an answer, say that there are several: then the curve is
+//! Where laws are not monotone, a point solved by itself may be any of them. Neighbouring samples that no
+//! one smooth curve goes through however short their interval becomes, or a search without an answer, say
+//! that there are several: then the curve is
 //! followed around its folds by arclength, and the search begins again from its largest motions. What is
 //! higher on the curve than what that finds leaves the highest point in doubt.
 
@@ -15,21 +16,45 @@ use crate::Error;
 
 /// What two neighbours may differ beyond the mean of their slopes, relative to the larger.
 const TORN: f64 = 0.25;
+/// Halvings of an interval after which they are on different branches.
+const HALVINGS: usize = 8;
 /// Tolerance of the curve's steps, if that of the harmonics is not larger.
 const STEPS: f64 = 0.01;
 /// What the curve may be higher than what is found: its harmonics and steps.
 const HIGHER: f64 = 2e-3;
 
-/// Whether no one smooth curve goes through some neighbours.
-pub(super) fn is_torn(samples: &[Sample]) -> bool {
-    samples.windows(2).any(|pair| {
-        let [a, b] = pair else { return false };
-        let half = 0.5 * (b.at - a.at);
-        let (from, to) = (a.unknowns.values(), b.unknowns.values());
-        let ways = from.iter().zip(to).zip(a.rate.iter().zip(&b.rate));
-        let missed: Vec<f64> = ways.map(|((x, y), (dx, dy))| y - x - half * (dx + dy)).collect();
-        from.len() != to.len() || norm(&missed) > TORN * norm(from).max(norm(to))
-    })
+/// Whether a smooth curve goes from one sample to another, as far as their slopes tell.
+fn are_joined(a: &Sample, b: &Sample) -> bool {
+    let half = 0.5 * (b.at - a.at);
+    let (from, to) = (a.unknowns.values(), b.unknowns.values());
+    let ways = from.iter().zip(to).zip(a.rate.iter().zip(&b.rate));
+    let missed: Vec<f64> = ways.map(|((x, y), (dx, dy))| y - x - half * (dx + dy)).collect();
+    from.len() == to.len() && norm(&missed) <= TORN * norm(from).max(norm(to))
+}
+
+impl Search<'_, '_> {
+    /// Whether some neighbours are on different branches: shorter intervals do not join them.
+    ///
+    /// # Errors
+    /// As for a solution at one frequency.
+    pub(super) fn is_torn(&mut self) -> Result<bool, Error> {
+        for right in 1..self.envelope.samples.len() {
+            let [mut a, mut b] = [right - 1, right].map(|i| self.envelope.samples[i].clone());
+            let mut halvings = 0;
+            while !are_joined(&a, &b) {
+                let Some(middle) = self.between(&a, &b)?.filter(|_| halvings < HALVINGS) else {
+                    return Ok(true);
+                };
+                if are_joined(&a, &middle) {
+                    a = middle;
+                } else {
+                    b = middle;
+                }
+                halvings += 1;
+            }
+        }
+        Ok(false)
+    }
 }
 
 impl PeakSearch<'_> {
@@ -89,19 +114,20 @@ fn uppermost(samples: Vec<Sample>) -> Vec<Sample> {
     out
 }
 
-/// Of two searches the one from the largest motions, or the other where that found higher points; groups
-/// of which the other, or the curve, is higher are in doubt.
-pub(super) fn higher(before: Found, again: Found, heights: &[f64]) -> Found {
+/// Of two searches the one whose highest points are those of the curve: Newton's method may have met motions
+/// that no curve joins to it. Groups of which the curve is higher are in doubt.
+pub(super) fn nearer(before: Found, again: Found, heights: &[f64]) -> Found {
     let height = |found: &Found, group: usize| match &found.tops[group] {
         Ok(top) => found.samples[top.sample].knots[top.curve].height,
         Err(_) => 0.0,
     };
-    let groups = 0..heights.len();
-    let all = groups.clone().all(|group| height(&before, group) > height(&again, group));
-    let (mut best, other) = if all { (before, again) } else { (again, before) };
-    for group in groups {
-        let known = height(&other, group).max(heights[group]);
-        if best.tops[group].is_ok() && known > (1.0 + HIGHER) * height(&best, group) {
+    let off = |found: &Found| -> f64 {
+        let groups = heights.iter().enumerate();
+        groups.map(|(group, known)| (height(found, group) / known - 1.0).abs()).sum()
+    };
+    let mut best = if off(&before) < off(&again) { before } else { again };
+    for (group, known) in heights.iter().enumerate() {
+        if best.tops[group].is_ok() && *known > (1.0 + HIGHER) * height(&best, group) {
             best.tops[group] = Err(Doubt::unsolved(PointStatus::Stalled));
         }
     }
