@@ -87,9 +87,7 @@ def test_stable_cycles_attract_and_unstable_ones_do_not():
     assert orbit.stability.tolist() == ["stable", "unstable"]
     for index, share, goes in ((0, 1.1, True), (1, 0.9, False)):
         start = orbit.state(index)
-        off = ss.State(
-            orbit.model_at(index), share * start.displacement, share * start.velocity
-        )
+        off = ss.State(orbit.model_at(index), share * start.displacement, share * start.velocity)
         omega = float(orbit.omega[index])
         run = ss.transient(orbit.model_at(index), omega, periods=400, keep=1, start=off)
         size = np.ptp(run.displacement("x")) / 2
@@ -98,9 +96,7 @@ def test_stable_cycles_attract_and_unstable_ones_do_not():
 
 
 def test_waves_of_a_disk_with_contacts_between_its_sectors():
-    sector = ss.Structure(
-        np.eye(2), [[2e4, -1e4], [-1e4, 3e4]], 0.5 * np.eye(2), ["x", "z"]
-    )
+    sector = ss.Structure(np.eye(2), [[2e4, -1e4], [-1e4, 3e4]], 0.5 * np.eye(2), ["x", "z"])
     between = ss.Coulomb(
         ["x", "z"],
         ["next.x", "next.z"],

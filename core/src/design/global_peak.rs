@@ -255,11 +255,11 @@ impl<'a> PeakSearch<'a> {
         if model.is_monotone() || sure {
             return Ok(Some(found));
         }
-        let Some((largest, heights)) = self.upper_branch(model, resolution)? else {
+        let Some(largest) = self.upper_branch(model, resolution)? else {
             return Ok((!self.is_ended()).then_some(found));
         };
-        let again = self.search_from(model, resolution, &largest)?;
-        Ok(again.map(|again| nearer(found, again, &heights)))
+        let again = self.search_from(model, resolution, &largest.samples)?;
+        Ok(again.map(|again| nearer(found, again, &largest.heights)))
     }
 
     fn is_ended(&self) -> bool {

@@ -57,14 +57,21 @@ impl Search<'_, '_> {
     }
 }
 
+/// The largest motions of a curve.
+pub(super) struct Uppermost {
+    /// By frequency.
+    pub(super) samples: Vec<Sample>,
+    /// What each group reaches on the curve.
+    pub(super) heights: Vec<f64>,
+}
+
 impl PeakSearch<'_> {
-    /// The samples of the largest motions of the curve over the range, by frequency, and the height that
-    /// each group reaches on it; nothing if the analysis is to end, or the curve has no two points.
+    /// The largest motions of the curve over the range; nothing if the analysis is to end, or the curve has no two points.
     pub(super) fn upper_branch(
         &mut self,
         model: &Model,
         resolution: Resolution,
-    ) -> Result<Option<(Vec<Sample>, Vec<f64>)>, Error> {
+    ) -> Result<Option<Uppermost>, Error> {
         let dofs = self.quest.groups.concat();
         let mut settings = self.settings.at(resolution);
         settings.tolerance = settings.tolerance.max(STEPS);
@@ -92,7 +99,7 @@ impl PeakSearch<'_> {
         });
         let heights = heights.collect();
         let largest = uppermost(samples);
-        Ok((largest.len() > 1).then_some((largest, heights)))
+        Ok((largest.len() > 1).then_some(Uppermost { samples: largest, heights }))
     }
 }
 
