@@ -44,6 +44,11 @@ impl Problem {
         self.model.is_symmetric() && residual.is_symmetric()
     }
 
+    /// Whether what contacts do in free motions depends on the state at rest.
+    fn biased(&self) -> bool {
+        self.model.is_biased()
+    }
+
     /// Builds the problem from matrices, contacts `(law, rows, parameters)` and forces
     /// `(harmonic, amplitude per DOF)`; `proportional` says that a law made the damping, one that
     /// couples none of the modes without contacts.

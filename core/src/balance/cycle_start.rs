@@ -2,7 +2,9 @@
 //!
 //! As the negative damping vanishes the limit cycle tends to the linear motion of the stuck
 //! structure that just reaches the slip limit of one contact: friction need not dissipate anything.
+//! Under static loads, or laws that are not odd, that motion is one about the state at rest.
 
+use super::cycle_rest::Equilibrium;
 use super::limit_cycle::CycleBalance;
 use crate::contact::{ContactLaw, Describing};
 use crate::fourier::SampleTable;
@@ -22,6 +24,8 @@ const NEARER: [f64; 7] = [1.0, 0.5, 0.2, 0.05, 0.01, 1e-3, 1e-4];
 const FURTHER: i32 = 50;
 /// Contact displacement, relative to the largest of all modes, that counts as none.
 const STILL: f64 = 1e-9;
+/// A frequency, relative to the highest natural one, at which nothing resonates.
+const OFF_RESONANCE: f64 = 1.37;
 
 /// A stuck mode that negative damping can excite.
 #[derive(Debug, Clone)]
@@ -30,32 +34,47 @@ pub struct Onset {
     pub mode: StuckMode,
     /// Ratio r at which its damping vanishes with all contacts stuck.
     pub ratio: f64,
-    /// Modal amplitude at which the first contact begins to slip [m √kg].
+    /// Modal amplitude at which the first contact begins to slip, or leaves the state it has at rest
+    /// [m √kg].
     pub amplitude: f64,
-    /// That contact point.
+    /// That contact point; about a state at rest, the one that bears most.
     pub point: usize,
     /// Its law, if that has a describing function.
     law: Option<Arc<dyn ContactLaw>>,
-    /// Force at which it begins to slip \[N\].
+    /// Its force there \[N\].
     pub limit: f64,
     /// How many times further that contact slips as a whole: 1 unless it slips little by little.
     pub whole: f64,
     /// DOF that moves most, of those that no contact restrains, if there are any.
     pub dof: usize,
+    /// The state at rest, if motions are not symmetric.
+    rest: Option<Equilibrium>,
 }
 
 impl Onset {
-    /// The onset of a mode, counted from 0 by rising frequency of the stuck structure, at a value
-    /// of what is followed.
+    /// The onset of a mode, counted from 0 by rising frequency of the stuck structure, or of that with
+    /// its contacts as they are at rest, at a value of what is followed.
     ///
     /// # Errors
-    /// No such mode; a mode that moves no contact or that the negative damping does not excite.
+    /// No such mode; a mode that moves no contact or that the negative damping does not excite; no state
+    /// at rest, or one that the smallest motion leaves.
     pub fn new(family: &FlutterModel<'_>, mode: usize, value: f64) -> Result<Self, Error> {
         let laws = family.laws_at(value)?;
         let model = family.model();
-        let stiffness = model.stiffness_of(&laws);
+        let mut stiffness = model.stiffness_of(&laws);
         let limits: Vec<f64> = laws.iter().flat_map(|law| law.onsets()).collect();
-        let modes = family.compliance().stuck_modes(stiffness.as_ref())?;
+        let mut modes = family.compliance().stuck_modes(stiffness.as_ref())?;
+        let mut rest = None;
+        if !family.is_symmetric() {
+            let beside = modes.last().map_or(1.0, |highest| OFF_RESONANCE * highest.omega);
+            let found = Equilibrium::new(family, value, beside).ok_or_else(|| {
+                let remedy = "the static loads have no equilibrium that contacts bear";
+                Error::value("mode", mode as f64, remedy)
+            })?;
+            stiffness = found.stiffness(&stiffness);
+            modes = family.compliance().stuck_modes(stiffness.as_ref())?;
+            rest = Some(found);
+        }
         let largest = modes.iter().flat_map(|m| &m.contact).map(|u| u.norm()).fold(0.0, f64::max);
         let Some(own) = modes.get(mode) else {
             let remedy = format!("the structure has modes 0 to {}", modes.len().saturating_sub(1));
@@ -66,13 +85,25 @@ impl Onset {
                 (0..own.contact.len()).map(|j| own.contact[j] * stiffness[(i, j)]).sum();
             sum.norm()
         };
-        let onset = (0..limits.len())
-            .filter(|&i| limits[i].is_finite() && own.contact[i].norm() > STILL * largest)
-            .map(|i| (limits[i] / force(i), i))
-            .filter(|(amplitude, _)| amplitude.is_finite() && *amplitude > 0.0)
-            .min_by(|a, b| a.0.total_cmp(&b.0));
+        let moved = (0..limits.len()).filter(|&i| own.contact[i].norm() > STILL * largest);
+        let onset = if let Some(rest) = &rest {
+            let stuck = model.stiffness_of(&laws).norm_max();
+            let bears = |i: usize| stuck * own.contact[i].norm();
+            let most = moved.max_by(|a, b| bears(*a).total_cmp(&bears(*b)));
+            most.and_then(|i| Some((rest.reach(family, value, own, bears(i))?, i)))
+        } else {
+            moved
+                .filter(|&i| limits[i].is_finite())
+                .map(|i| (limits[i] / force(i), i))
+                .filter(|(amplitude, _)| amplitude.is_finite() && *amplitude > 0.0)
+                .min_by(|a, b| a.0.total_cmp(&b.0))
+        };
         let Some((amplitude, point)) = onset else {
-            let remedy = "moves no contact that can slip, so that friction cannot bound it";
+            let remedy = if rest.is_some() {
+                "moves no contact that can slip or open, or one that touches without a load"
+            } else {
+                "moves no contact that can slip, so that friction cannot bound it"
+            };
             return Err(Error::value("mode", mode as f64, remedy));
         };
         let rounding = 1e-12 * own.omega;
@@ -99,7 +130,7 @@ impl Onset {
         let mut contacts = laws.iter().zip(model.points());
         let law = contacts.find(|(_, range)| range.contains(&point)).map(|(law, _)| law);
         let gross = laws.iter().flat_map(|law| law.limits()).nth(point).filter(|f| f.is_finite());
-        let whole = gross.map_or(1.0, |gross| gross / limits[point]);
+        let whole = gross.filter(|_| rest.is_none()).map_or(1.0, |gross| gross / limits[point]);
         let law = law.filter(|law| law.describing(1.0).is_some());
         let law = law.map(|law| Arc::from(law.with_scaled_forces(1.0)));
         Ok(Self {
@@ -108,14 +139,15 @@ impl Onset {
             amplitude,
             point,
             law,
-            limit: limits[point],
+            limit: if rest.is_some() { amplitude * force(point) } else { limits[point] },
             whole,
             dof,
+            rest,
         })
     }
 
-    /// A limit cycle at the ratio r asked for, or as near to the onset as needed: unknowns of
-    /// [`CycleBalance`]. Nothing if Newton's method finds none.
+    /// A limit cycle at the ratio r asked for, or as near to the onset as needed, about a state at rest
+    /// near the onset in any case: unknowns of [`CycleBalance`]. Nothing if Newton's method finds none.
     pub fn first_point(
         &self,
         family: &FlutterModel<'_>,
@@ -123,6 +155,10 @@ impl Onset {
         ratio: f64,
         interrupted: &dyn Fn() -> bool,
     ) -> Option<Vec<f64>> {
+        if let Some(rest) = &self.rest {
+            let wanted = [self.amplitude, ratio];
+            return rest.first_point(family, table, &self.mode, wanted, interrupted);
+        }
         for share in NEARER {
             for factor in [1.0, 0.7, 1.5, 0.3, 3.0] {
                 let ratio = self.ratio + share * (ratio - self.ratio);

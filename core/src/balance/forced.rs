@@ -221,6 +221,11 @@ impl<'a> ForcedBalance<'a> {
 
     /// Whether a homotopy leads to the solution: it does where there is one alone.
     fn follows(&self) -> bool {
+        self.is_monotone()
+    }
+
+    /// Whether all laws are monotone.
+    pub(crate) fn is_monotone(&self) -> bool {
         self.model.is_monotone()
     }
 

@@ -7,7 +7,6 @@
 use super::condensed::Condensed;
 use super::evaluation::Evaluated;
 use super::unknowns::Unknowns;
-use crate::contact::Residual;
 use crate::fourier::{Harmonics, SampleTable};
 use crate::model::FlutterModel;
 use crate::solve::{norm, Curve, System as _};
@@ -21,7 +20,7 @@ pub struct CycleBalance<'a> {
     interrupted: &'a dyn Fn() -> bool,
     /// The equations at the last point, and their residual.
     pub(super) at: Option<Evaluation<'a>>,
-    /// Last accepted point, and the size of its motion.
+    /// Last accepted point, and the size of its motion about the mean.
     reference: Vec<f64>,
     size: f64,
     /// Evaluations of the laws so far.
@@ -81,7 +80,7 @@ impl<'a> CycleBalance<'a> {
         let sound = omega > 0.0 && omega.is_finite() && value.is_finite() && norm(u).is_finite();
         let model = self.family.at(value).ok().filter(|_| sound)?;
         let model = Evaluated::Made(Arc::new(model));
-        let mut equations = Condensed::new(model, self.table, Residual::Centred, true);
+        let mut equations = Condensed::new(model, self.table, self.family.residual(), true);
         equations.set_omega(omega).ok()?;
         let mut residual = vec![0.0; u.len()];
         equations.residual(u, &mut residual);
@@ -109,11 +108,26 @@ impl<'a> CycleBalance<'a> {
         drift(self.table.harmonics(), u).iter().map(|v| v / self.size).collect()
     }
 
+    /// Size of the motion of contact displacements about their mean.
+    fn motion(&self, u: &[f64]) -> f64 {
+        oscillation(self.table.harmonics(), u)
+    }
+
     /// The contact displacements of a point in the layout of a balance.
     #[must_use]
     pub fn series(&self, z: &[f64]) -> Unknowns {
         Unknowns::new(self.table.harmonics().clone(), self.parts(z).0.to_vec())
     }
+}
+
+/// Norm of series without their means.
+pub(crate) fn oscillation(harmonics: &Harmonics, series: &[f64]) -> f64 {
+    let all = norm(series);
+    if !harmonics.has_mean() {
+        return all;
+    }
+    let own = series.chunks_exact(harmonics.slots()).flat_map(|own| &own[harmonics.offset()..]);
+    own.map(|x| x * x).sum::<f64>().sqrt()
 }
 
 /// Derivative of a series in its angle.
@@ -180,7 +194,7 @@ impl Curve for CycleBalance<'_> {
 
     fn weights(&self, z: &[f64]) -> Vec<f64> {
         let (u, omega, value) = self.parts(z);
-        let motion = norm(u).max(f64::MIN_POSITIVE).recip();
+        let motion = self.motion(u).max(f64::MIN_POSITIVE).recip();
         let mut weights = vec![motion; u.len()];
         weights.extend([omega.recip(), value.abs().max(f64::MIN_POSITIVE).recip()]);
         weights
@@ -188,7 +202,7 @@ impl Curve for CycleBalance<'_> {
 
     fn accept(&mut self, z: &[f64]) {
         self.reference = z.to_vec();
-        self.size = norm(self.parts(z).0).max(f64::MIN_POSITIVE);
+        self.size = self.motion(self.parts(z).0).max(f64::MIN_POSITIVE);
     }
 
     fn interrupted(&self) -> bool {

@@ -4,6 +4,7 @@
 use super::first_look::{Aim, FirstLook, Precision};
 use super::samples::Sample;
 use super::search::{Found, Search};
+use super::upper_branch::nearer;
 use crate::balance::{
     Evaluation, ForcedBalance, HarmonicChoice, PointStatus, Progress, Resolution, Settings,
     WarmStart,
@@ -198,7 +199,7 @@ impl<'a> PeakSearch<'a> {
         }
         loop {
             let Some(found) = self.search(model, resolution)? else {
-                let ended = !(self.progress)(self.share);
+                let ended = self.is_ended();
                 let status = if ended { PointStatus::NotComputed } else { PointStatus::Stalled };
                 let summits = vec![(GlobalPeak::missing(status), 0); quest.groups.len()];
                 return Ok(Reached { summits, resolution, wanted: resolution });
@@ -246,24 +247,53 @@ impl<'a> PeakSearch<'a> {
         }
     }
 
+    /// Searches, where laws are not monotone among the largest motions.
     fn search(&mut self, model: &Model, resolution: Resolution) -> Result<Option<Found>, Error> {
+        let seeds = std::mem::take(&mut self.seeds);
+        let Some(found) = self.search_from(model, resolution, &seeds)? else { return Ok(None) };
+        let sure = found.tops.iter().all(Result::is_ok) && !found.torn;
+        if model.is_monotone() || sure {
+            return Ok(Some(found));
+        }
+        let Some(largest) = self.upper_branch(model, resolution)? else {
+            return Ok((!self.is_ended()).then_some(found));
+        };
+        let again = self.search_from(model, resolution, &largest.samples)?;
+        Ok(again.map(|again| nearer(found, again, &largest.heights)))
+    }
+
+    fn is_ended(&self) -> bool {
+        !(self.progress)(self.share)
+    }
+
+    /// What is looked for.
+    pub(super) fn aim(&self) -> Aim {
+        Aim {
+            groups: self.quest.groups.clone(),
+            measure: self.quest.measure,
+            span: self.quest.span,
+            precision: self.precision,
+            most_points: MOST_POINTS,
+        }
+    }
+
+    fn search_from(
+        &mut self,
+        model: &Model,
+        resolution: Resolution,
+        seeds: &[Sample],
+    ) -> Result<Option<Found>, Error> {
         let settings = self.settings.at(resolution);
         // Nothing is observed: a point of the search needs no error estimate.
         let mut balance = ForcedBalance::new(model, settings, &[])?
             .watched(self.progress)
             .remembering(std::mem::take(&mut self.memory));
         balance.report(self.share);
-        let aim = Aim {
-            groups: self.quest.groups.clone(),
-            measure: self.quest.measure,
-            span: self.quest.span,
-            precision: self.precision,
-            most_points: MOST_POINTS,
-        };
+        let aim = self.aim();
         let table = balance.table(resolution.harmonics);
-        let look = FirstLook::new(model, &aim, table.harmonics().orders(), &self.seeds)?;
+        let look = FirstLook::new(model, &aim, table.harmonics().orders(), seeds)?;
         let search = Search::new(settings.residual, &aim, &mut balance);
-        let found = search.run(&look, &self.seeds)?;
+        let found = search.run(&look, seeds)?;
         self.points += found.as_ref().map_or(0, |found| found.samples.len());
         self.memory = balance.into_memory();
         Ok(found)

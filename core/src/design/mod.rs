@@ -29,6 +29,7 @@ mod patterns;
 mod quasi_static;
 mod samples;
 mod search;
+mod upper_branch;
 
 pub use bounds::bound;
 pub use curve::{peak_curve, Curve, Peak, Target};

@@ -11,7 +11,7 @@ use super::envelope::{is_shortest, Envelope, Gap};
 use super::first_look::{Aim, Candidate, FirstLook, SEEN};
 use super::interpolant::Knot;
 use super::samples::{predicted, Sample};
-use crate::balance::{ForcedBalance, Linearised, PointStatus, Unknowns};
+use crate::balance::{ForcedBalance, Linearised, Point, PointStatus, Unknowns};
 use crate::contact::Residual;
 use crate::Error;
 
@@ -52,7 +52,7 @@ pub(super) struct Doubt {
 }
 
 impl Doubt {
-    fn unsolved(status: PointStatus) -> Self {
+    pub(super) fn unsolved(status: PointStatus) -> Self {
         Self { status, at: f64::NAN }
     }
 
@@ -67,6 +67,8 @@ pub(super) struct Found {
     pub(super) samples: Vec<Sample>,
     /// The highest point of each group, or why there is none.
     pub(super) tops: Vec<Result<Top, Doubt>>,
+    /// Whether laws that are not monotone leave neighbours on different branches.
+    pub(super) torn: bool,
 }
 
 /// A search under way.
@@ -75,7 +77,7 @@ pub(super) struct Search<'a, 'b> {
     aim: &'b Aim,
     dofs: Vec<usize>,
     balance: &'b mut ForcedBalance<'a>,
-    envelope: Envelope,
+    pub(super) envelope: Envelope,
     /// Points without a solution.
     failures: usize,
     /// How the last of them ended.
@@ -106,7 +108,7 @@ impl<'a, 'b> Search<'a, 'b> {
         let unbounded = |at: &Option<f64>| at.map(Doubt::unbounded);
         if look.unbounded.iter().all(Option::is_some) {
             let tops = look.unbounded.iter().filter_map(unbounded).map(Err).collect();
-            return Ok(Some(Found { samples: Vec::new(), tops }));
+            return Ok(Some(Found { samples: Vec::new(), tops, torn: false }));
         }
         for &omega in &look.omega {
             self.look(omega, seeds)?;
@@ -137,6 +139,7 @@ impl<'a, 'b> Search<'a, 'b> {
         for (group, _) in doubts.iter().enumerate().filter(|(_, doubt)| doubt.is_none()) {
             self.polish(group)?;
         }
+        let torn = !self.balance.is_monotone() && self.is_torn()?;
         if self.is_interrupted() {
             return Ok(None);
         }
@@ -144,7 +147,7 @@ impl<'a, 'b> Search<'a, 'b> {
         let tops: Option<Vec<Top>> = (0..doubts.len()).map(top).collect();
         Ok(tops.map(|tops| {
             let tops = tops.into_iter().zip(doubts).map(|(top, doubt)| doubt.map_or(Ok(top), Err));
-            Found { tops: tops.collect(), samples: self.envelope.samples }
+            Found { tops: tops.collect(), samples: self.envelope.samples, torn }
         }))
     }
 
@@ -258,6 +261,14 @@ impl<'a, 'b> Search<'a, 'b> {
         Ok(None)
     }
 
+    /// A point in the middle between two others.
+    pub(super) fn between(&mut self, a: &Sample, b: &Sample) -> Result<Option<Sample>, Error> {
+        let omega = 0.5 * (a.at + b.at);
+        let start = predicted(&[a.clone(), b.clone()], omega);
+        let found = self.attempt(omega, start.as_ref())?;
+        Ok(found.filter(|one| a.at < one.at && one.at < b.at))
+    }
+
     /// Solves at one frequency: from `start` or the samples around it, from the stuck response,
     /// or from either neighbour as it is.
     fn solve(&mut self, omega: f64, start: Option<Unknowns>) -> Result<Option<Sample>, Error> {
@@ -285,6 +296,14 @@ impl<'a, 'b> Search<'a, 'b> {
             }
             solved => solved?,
         };
+        self.sampled(&point)
+    }
+
+    /// A point with its slopes; nothing of one without a solution.
+    ///
+    /// # Errors
+    /// As for a solution at one frequency.
+    pub(super) fn sampled(&mut self, point: &Point) -> Result<Option<Sample>, Error> {
         let (Some(unknowns), true) = (point.unknowns(), point.is_solved()) else {
             self.failure = Some(point.status);
             return Ok(None);

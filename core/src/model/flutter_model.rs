@@ -3,8 +3,8 @@
 
 use super::body::Body;
 use super::{Change, Model, ParameterMode, Variation};
-use crate::contact::ContactLaw;
-use crate::structure::{FlutterCompliance, Ports};
+use crate::contact::{ContactLaw, Residual};
+use crate::structure::{FlutterCompliance, HarmonicLoad, Ports};
 use crate::Error;
 use faer::{c64, Mat};
 use std::sync::Arc;
@@ -21,11 +21,15 @@ pub enum NegativeDamping {
     Wave(Vec<Mat<c64>>),
 }
 
-/// A self-excited model: without loads, with the damping `C + r C_neg`.
+/// A self-excited model with the damping `C + r C_neg`: without loads, but for static ones where the
+/// state at rest decides what contacts do.
 pub struct FlutterModel<'a> {
     model: &'a Model,
     negative: NegativeDamping,
     compliance: FlutterCompliance,
+    /// Static loads that stay.
+    loads: Vec<HarmonicLoad>,
+    symmetric: bool,
     ratio: f64,
     variation: Variation,
     changes: Vec<Change>,
@@ -35,21 +39,14 @@ impl<'a> FlutterModel<'a> {
     /// A model with its negative damping; `ratio` is r where a parameter of contacts is varied.
     ///
     /// # Errors
-    /// Laws that are not odd, a ring of sectors, a matrix that does not fit, a contact or
-    /// parameter that does not exist, a level: limit cycles bear no loads.
+    /// A matrix that does not fit, a contact or parameter that does not exist, a level: limit cycles
+    /// bear no loads that vary; a parameter of contacts whose friction remembers static loads.
     pub fn new(
         model: &'a Model,
         negative: NegativeDamping,
         variation: Variation,
         ratio: f64,
     ) -> Result<Self, Error> {
-        if let Some(index) = model.laws().iter().position(|law| !law.is_odd()) {
-            return Err(Error::value(
-                format!("contact {}", index + 1),
-                f64::NAN,
-                "limit cycles need laws whose force reverses with the motion",
-            ));
-        }
         if model.laws().is_empty() {
             let remedy = "without friction nothing bounds the motion; add a contact";
             return Err(Error::value("contacts", 0.0, remedy));
@@ -82,7 +79,30 @@ impl<'a> FlutterModel<'a> {
             return Err(Error::value("level", ratio, remedy));
         }
         let changes = variation.changes(model)?;
-        Ok(Self { model, negative, compliance, ratio, variation, changes })
+        let symmetric = !model.is_biased();
+        let loads = if symmetric { Vec::new() } else { static_loads(model) };
+        if !changes.is_empty() && !loads.is_empty() {
+            let remedy = "what friction keeps of static loads changes with it; follow r";
+            return Err(Error::value("contacts", changes[0].own, remedy));
+        }
+        let compliance = if symmetric { compliance } else { compliance.with_means(loads.clone()) };
+        Ok(Self { model, negative, compliance, loads, symmetric, ratio, variation, changes })
+    }
+
+    /// Whether its motions have half-wave symmetry: odd laws that no static load holds off their middle.
+    #[must_use]
+    pub fn is_symmetric(&self) -> bool {
+        self.symmetric
+    }
+
+    /// The residual traction that is assumed.
+    #[must_use]
+    pub fn residual(&self) -> Residual {
+        if self.loads.is_empty() {
+            Residual::Centred
+        } else {
+            Residual::FromRest
+        }
     }
 
     /// The model as it is given.
@@ -131,7 +151,7 @@ impl<'a> FlutterModel<'a> {
         self.variation.laws(self.model, value)
     }
 
-    /// The model without loads at a value of the number that is varied.
+    /// The model without loads but static ones at a value of the number that is varied.
     ///
     /// # Errors
     /// A value that a law refuses.
@@ -141,7 +161,7 @@ impl<'a> FlutterModel<'a> {
         let ports = Ports {
             rows: given.ports.rows.clone(),
             stiffness: stiffness.clone(),
-            loads: Vec::new(),
+            loads: self.loads.clone(),
         };
         Ok(Model {
             structure: Arc::clone(&given.structure),
@@ -173,4 +193,12 @@ impl<'a> FlutterModel<'a> {
         }
         self.changes.iter().all(|change| change.own == first.own).then_some(first.own)
     }
+}
+
+/// The static loads of a model.
+pub(super) fn static_loads(model: &Model) -> Vec<HarmonicLoad> {
+    let acts = |load: &&HarmonicLoad| {
+        load.harmonic == 0 && load.amplitude.iter().any(|force| force.norm() > 0.0)
+    };
+    model.ports().loads.iter().filter(acts).cloned().collect()
 }

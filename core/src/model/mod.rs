@@ -286,6 +286,16 @@ impl Model {
         self.laws.iter().all(|law| law.is_monotone())
     }
 
+    /// Whether what contacts do in free motions depends on the state at rest: a law is not odd, or a
+    /// static load holds one without memory off its middle. Friction under constant loads moves with
+    /// the rest.
+    #[must_use]
+    pub fn is_biased(&self) -> bool {
+        let elastic = || self.laws.iter().any(|law| law.state_size() == 0);
+        let loaded = || !flutter_model::static_loads(self).is_empty();
+        self.laws.iter().any(|law| !law.is_odd()) || (elastic() && loaded())
+    }
+
     /// Whether the motion has half-wave symmetry: odd laws under odd harmonics alone.
     #[must_use]
     pub fn is_symmetric(&self) -> bool {

@@ -96,15 +96,20 @@ impl ModalSystem {
         })
     }
 
-    /// The same structure without loads, with another modal damping and the contacts of another
-    /// model of it.
+    /// The same structure without loads, but for `held` ones that are static, with another modal damping
+    /// and the contacts of another model of it.
     ///
     /// # Errors
     /// A contact whose stiffness has no eigenvalues.
-    pub(crate) fn undriven(&self, model: &Model, damping: &ModalDamping) -> Result<Self, Error> {
+    pub(crate) fn undriven(
+        &self,
+        model: &Model,
+        damping: &ModalDamping,
+        held: bool,
+    ) -> Result<Self, Error> {
         let bodies = Bodies::new(model, false)?;
         Ok(Self {
-            loads: Vec::new(),
+            loads: self.loads.iter().filter(|(k, _)| held && *k == 0).cloned().collect(),
             rate: rate_of(model, damping),
             damping: Damping::of(damping),
             limits: bodies.limits(),
@@ -123,7 +128,7 @@ impl ModalSystem {
         RealModes { omega_squared, shapes }.damping(matrix)
     }
 
-    /// Accelerations η'' without loads, from displacements, velocities and contact forces.
+    /// Accelerations η'' under static loads alone, from displacements, velocities and contact forces.
     pub(crate) fn acceleration(
         &self,
         displacement: &[f64],
@@ -135,6 +140,9 @@ impl ModalSystem {
         self.add_damping(velocity, -1.0, &mut out);
         for (point, f) in force.iter().enumerate() {
             out.iter_mut().zip(self.contact_shape(point)).for_each(|(a, b)| *a -= b * f);
+        }
+        for (_, load) in self.loads.iter().filter(|(order, _)| *order == 0) {
+            out.iter_mut().zip(load).for_each(|(a, p)| *a += p.re);
         }
         out
     }

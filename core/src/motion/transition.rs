@@ -59,7 +59,7 @@ impl<'a> Transition<'a> {
         y
     }
 
-    /// Rate of change of the coordinates of a state without loads, in its regime.
+    /// Rate of change of the coordinates of a state under static loads alone, in its regime.
     pub(crate) fn rate(&self, state: &State, regime: &ContactState) -> Vec<f64> {
         let system = self.system;
         let speed = system.contact_displacement(&state.velocity);

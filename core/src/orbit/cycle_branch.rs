@@ -2,12 +2,14 @@
 
 use super::cycles::{relative, Cycle, CycleSettings, LimitCycles, Turn, RARE};
 use super::limit_cycle::{CycleOrbits, OrbitCurve};
-use super::orbit_postprocess::{odd_table, postprocess};
+use super::orbit_postprocess::postprocess;
 use super::quadrature::Quadrature;
 use super::sides::{extreme, joined, value, Sides};
-use super::stability::{judge, Judge, TRACING};
-use crate::balance::{CycleBalance, HarmonicChoice, Onset, Point, PointStatus, Progress};
-use crate::fourier::SampleTable;
+use super::stability::{judge, judge_along, Judge, TRACING};
+use crate::balance::{
+    oscillation, with_history, CycleBalance, HarmonicChoice, Onset, Point, PointStatus, Progress,
+};
+use crate::fourier::{Harmonics, SampleTable};
 use crate::model::{FlutterModel, Model, NegativeDamping, Variation};
 use crate::solve::{at_parameter, tangent, Bounds, Branch, Curve, End, Steps};
 use crate::timing::Profile;
@@ -40,6 +42,8 @@ pub fn limit_cycles(
 ) -> Result<LimitCycles, Error> {
     settings.check()?;
     let begin = Instant::now();
+    let held = if model.is_biased() { with_history(model)? } else { None };
+    let model = held.as_ref().unwrap_or(model);
     let given = FlutterModel::new(model, negative.clone(), Variation::Ratio, ratio)?;
     let family = FlutterModel::new(model, negative.clone(), variation.clone(), ratio)?;
     let stopped = Cell::new(false);
@@ -98,7 +102,7 @@ impl Finder<'_> {
         let scale = self.onset.mode.omega;
         let last = rungs.len() - 1;
         for (rung, &highest) in rungs.iter().enumerate() {
-            let table = odd_table(highest);
+            let table = self.table(highest);
             let sides = match self.follow_balance(&table, interrupted) {
                 Err(_) if rung < last => continue,
                 other => other?,
@@ -106,7 +110,7 @@ impl Finder<'_> {
             let start = sides.branch.points.first().cloned().unwrap_or_default();
             let mut curve = CycleBalance::new(self.family, &table, &start, interrupted);
             let selected = self.select(&mut curve, &sides);
-            let beyond = odd_table(highest + (highest / 2).max(4));
+            let beyond = self.table(highest + (highest / 2).max(4));
             let mut cycles = Vec::with_capacity(selected.len());
             let mut beyond_tolerance = 0;
             let mut ended = None;
@@ -151,6 +155,8 @@ impl Finder<'_> {
                 };
                 let starts = out.cycles.iter().map(start).collect();
                 judge(&self.judge(orbits, false), starts, &mut out, interrupted, share);
+            } else if settings.stability && !self.family.is_symmetric() {
+                judge_along(self.family, &mut out, interrupted, share);
             }
             return Ok(out);
         }
@@ -164,7 +170,7 @@ impl Finder<'_> {
         share: &Cell<f64>,
     ) -> Result<LimitCycles, Error> {
         let scale = self.onset.mode.omega;
-        let table = odd_table(START_HARMONICS);
+        let table = self.table(START_HARMONICS);
         let start = self.first(&table, interrupted)?;
         let of_ratio = CycleOrbits::new(&self.given)?.ok_or(Error::TravellingWave)?;
         let begin = {
@@ -177,9 +183,9 @@ impl Finder<'_> {
         };
         let mut of_ratio = OrbitCurve::new(&of_ratio, scale, &begin, interrupted);
         let mut curve = OrbitCurve::new(orbits, scale, &begin, interrupted);
-        let sides = self.follow(&mut of_ratio, &mut curve, begin)?;
+        let sides = self.follow(&mut of_ratio, &mut curve, begin, &crate::solve::norm)?;
         let selected = self.select(&mut curve, &sides);
-        let reported = odd_table(self.settings.reported);
+        let reported = self.table(self.settings.reported);
         let mut quadrature = Quadrature::default();
         let mut cycles = Vec::with_capacity(selected.len());
         let mut points = Vec::new();
@@ -213,6 +219,11 @@ impl Finder<'_> {
     fn judge<'b>(&self, orbits: &'b CycleOrbits<'b>, exact: bool) -> Judge<'b> {
         let whole = self.settings.values.is_none();
         Judge { orbits, scale: self.onset.mode.omega, exact, whole }
+    }
+
+    /// Samples of the harmonics that the motions have.
+    fn table(&self, highest: usize) -> SampleTable {
+        SampleTable::new(Harmonics::new(highest, self.family.is_symmetric()))
     }
 
     /// The first limit cycle in r, by harmonic balance.
@@ -255,21 +266,23 @@ impl Finder<'_> {
         let start = self.first(table, interrupted)?;
         let mut of_ratio = CycleBalance::new(&self.given, table, &start, interrupted);
         let mut curve = CycleBalance::new(self.family, table, &start, interrupted);
-        self.follow(&mut of_ratio, &mut curve, start)
+        let moved = |u: &[f64]| oscillation(table.harmonics(), u);
+        self.follow(&mut of_ratio, &mut curve, start, &moved)
     }
 
     /// Follows the branch: in r at once, or in r to the ratio asked for and from there to both
-    /// sides in the other scalar.
+    /// sides in the other scalar; `moved` is the size of the motion.
     fn follow(
         &self,
         of_ratio: &mut dyn Curve,
         curve: &mut dyn Curve,
         start: Vec<f64>,
+        moved: &dyn Fn(&[f64]) -> f64,
     ) -> Result<Sides, Error> {
         let settings = self.settings;
         let steps = Steps::default();
         // The mean over the states, however many there are.
-        let motion = |z: &[f64]| crate::solve::norm(&z[..z.len() - 2]) / (z.len() as f64).sqrt();
+        let motion = |z: &[f64]| moved(&z[..z.len() - 2]) / (z.len() as f64).sqrt();
         // A contact that slips little by little has its onset at next to nothing.
         let whole =
             if self.onset.whole > 1.0 { self.onset.amplitude * self.onset.whole } else { 0.0 };
@@ -280,7 +293,8 @@ impl Finder<'_> {
             let lowest = self.lowest_ratio().min(start[start.len() - 1]);
             let bounds =
                 Bounds { range: (lowest, settings.range.1), most: settings.most, ends: &endless };
-            let mut branch = Branch::continue_branch(curve, start, 1.0, steps, &bounds);
+            let sign = if self.family.is_symmetric() { 1.0 } else { rising(curve, &start, moved) };
+            let mut branch = Branch::continue_branch(curve, start, sign, steps, &bounds);
             let limit = extreme(&branch, 1.0);
             let ends = [End::Range, branch.end];
             // What lies below the range served to get started.
@@ -388,5 +402,24 @@ impl Finder<'_> {
             interrupted: false,
             profile: Profile::default(),
         }
+    }
+}
+
+/// Direction in the scalar in which motions grow: contacts that open may take damping off a mode, or leave
+/// it as it is.
+fn rising(curve: &mut dyn Curve, z: &[f64], moved: &dyn Fn(&[f64]) -> f64) -> f64 {
+    let weights = curve.weights(z);
+    let mut ahead = vec![0.0; z.len()];
+    ahead[z.len() - 1] = 1.0;
+    let Some(along) = tangent(curve, z, &weights, &ahead) else { return 1.0 };
+    let motion = |share: f64| -> f64 {
+        let there = z.iter().zip(&along).map(|(z, way)| z + share * way);
+        moved(&there.take(z.len() - 2).collect::<Vec<f64>>())
+    };
+    let grows = motion(1e-6) > motion(-1e-6);
+    if grows == (value(&along) > 0.0) {
+        1.0
+    } else {
+        -1.0
     }
 }

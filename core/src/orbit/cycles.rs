@@ -200,6 +200,8 @@ pub enum ChangeKind {
     Symmetry = 2,
     /// A multiplier jumps: a contact begins or ceases to slip at a further place of the period.
     Grazing = 3,
+    /// A multiplier passes −1: motion of twice the period branches off.
+    PeriodDoubling = 4,
 }
 
 /// A change of stability.

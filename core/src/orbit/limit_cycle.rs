@@ -1,5 +1,6 @@
 //! Exact limit cycles by shooting: the state that half a period of unknown length turns into its
-//! mirror image, with a scalar of the model as a further unknown.
+//! mirror image, or without half-wave symmetry a period into itself, with a scalar of the model as a
+//! further unknown.
 //!
 //! The derivative in the state is the analytic transition matrix of the flow, that in the period
 //! the velocity at its end, and that in the scalar a central difference of the flow: it only
@@ -13,14 +14,13 @@ use super::segments::{
 use super::shooting::Shooting;
 use super::start::start_of;
 use crate::balance::Point;
-use crate::contact::Residual;
 use crate::model::FlutterModel;
 use crate::motion::{ContactState, ModalSystem, State, Transition};
 use crate::solve::{norm, Curve};
 use crate::structure::ModalDamping;
 use crate::Error;
 use faer::{c64, Mat};
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 /// Relative step of the central difference in the scalar: motions that grow by orders of magnitude
 /// over a period bend within 1e-5, and rounding stays far below what Newton's method notices.
@@ -66,7 +66,8 @@ impl<'a> CycleOrbits<'a> {
         } else {
             Some(given.with_laws(self.family.laws_at(value)?)?)
         };
-        let system = self.system.undriven(own.as_ref().unwrap_or(given), &damping)?;
+        let held = !self.family.is_symmetric();
+        let system = self.system.undriven(own.as_ref().unwrap_or(given), &damping, held)?;
         Ok(Member { own, given, system })
     }
 
@@ -75,8 +76,17 @@ impl<'a> CycleOrbits<'a> {
         2 * self.system.modes() + self.system.strains()
     }
 
+    /// Angle that the closing condition spans.
+    fn span(&self) -> f64 {
+        if self.family.is_symmetric() {
+            PI
+        } else {
+            TAU
+        }
+    }
+
     /// Unknowns of [`OrbitCurve`] from a harmonic balance: the states at the starts of equal
-    /// `segments` of half a period, which begins an eighth of a period behind the start of that of
+    /// `segments` of that span, which begins an eighth of a period behind the start of that of
     /// the balance, away from the turning points.
     ///
     /// # Errors
@@ -93,7 +103,7 @@ impl<'a> CycleOrbits<'a> {
         let orders = point.harmonics + 1;
         let mut z = Vec::with_capacity(segments * self.size() + 2);
         for number in 0..segments {
-            let angle = PI * (0.25 + number as f64 / segments as f64);
+            let angle = 0.25 * PI + self.span() * number as f64 / segments as f64;
             let mut later = point.clone();
             for series in [&mut later.displacement, &mut later.contact_displacement] {
                 for row in series.chunks_exact_mut(orders) {
@@ -102,7 +112,8 @@ impl<'a> CycleOrbits<'a> {
                     }
                 }
             }
-            let state = start_of(member.model(), &member.system, Residual::Centred, &later, true);
+            let (residual, half) = (self.family.residual(), self.family.is_symmetric());
+            let state = start_of(member.model(), &member.system, residual, &later, half);
             z.extend(coordinates.coordinates(&state));
         }
         z.extend([point.omega, value]);
@@ -122,11 +133,23 @@ impl<'a> CycleOrbits<'a> {
     }
 }
 
-/// What is known of the flow over half a period.
+/// Points that slip in one of the segments.
+fn slipped(segments: &[Segment]) -> Vec<bool> {
+    let mut all = vec![false; segments.first().map_or(0, |one| one.slipped.len())];
+    for one in segments {
+        all.iter_mut().zip(&one.slipped).for_each(|(all, own)| *all |= own);
+    }
+    all
+}
+
+/// What is known of the flow over the span of the closing condition.
 struct Evaluation {
     z: Vec<f64>,
     segments: Vec<Segment>,
     derivatives: bool,
+    /// What contacts that never slip keep over a whole period: it stays as it is, in the place of
+    /// equations of the last segment that hold by themselves.
+    kept: Vec<(usize, Vec<f64>)>,
 }
 
 /// The closing condition in the unknowns `(states, ω, scalar)`: the states at the starts of equal
@@ -171,6 +194,11 @@ impl<'a> OrbitCurve<'a> {
         curve
     }
 
+    /// Whether the closing condition is that of half a period, mirrored.
+    pub(super) fn is_symmetric(&self) -> bool {
+        self.orbits.family.is_symmetric()
+    }
+
     /// Has `visit` look at the closing condition of a point.
     pub(super) fn with_shooting<T>(
         &self,
@@ -183,8 +211,9 @@ impl<'a> OrbitCurve<'a> {
         }
         let member = self.orbits.member(*value).ok()?;
         let coordinates = Transition::new(&member.system, self.scale);
+        let half = self.is_symmetric();
         let mut shooting =
-            Shooting::within(&member.system, *omega, true, Some(self.interrupted), coordinates);
+            Shooting::within(&member.system, *omega, half, Some(self.interrupted), coordinates);
         visit(&member, &mut shooting, y)
     }
 
@@ -200,8 +229,15 @@ impl<'a> OrbitCurve<'a> {
         }
         self.flows += 1;
         self.matrices += usize::from(derivatives);
-        let segments = self.segments(z, derivatives);
-        self.at = segments.map(|segments| Evaluation { z: z.to_vec(), segments, derivatives });
+        self.at = self.with_shooting(z, |member, shooting, y| {
+            let segments = follow(member, shooting, y, derivatives)?;
+            let kept = if self.is_symmetric() {
+                Vec::new()
+            } else {
+                shooting.coordinates.conserved(&slipped(&segments))
+            };
+            Some(Evaluation { z: z.to_vec(), segments, derivatives, kept })
+        });
         self.at.is_some()
     }
 
@@ -214,16 +250,13 @@ impl<'a> OrbitCurve<'a> {
         })
     }
 
-    /// Multipliers over half a period, mirrored, without the one of the phase and the neutral ones,
+    /// Multipliers over half a period, mirrored, or over a whole one of no symmetry, without the one of the phase and the neutral ones,
     /// by falling modulus; and the number of the neutral ones.
     #[must_use]
     pub fn multipliers(&self, z: &[f64]) -> Option<(Vec<c64>, usize)> {
         let (mut multipliers, neutral) = self.with_shooting(z, |member, shooting, y| {
             let segments = follow(member, shooting, y, true)?;
-            let mut slipped = vec![false; self.orbits.system.points()];
-            for one in &segments {
-                slipped.iter_mut().zip(&one.slipped).for_each(|(all, own)| *all |= own);
-            }
+            let slipped = slipped(&segments);
             let mut neutral = 0;
             let reduced = segments.iter().map(|one| {
                 let (rest, count) = shooting.without_neutral(&one.derivative, &slipped);
@@ -250,7 +283,7 @@ impl<'a> OrbitCurve<'a> {
         let [.., omega, _] = z else { return None };
         self.with_shooting(z, |_, shooting, y| {
             let starts = y.chunks_exact(self.orbits.size());
-            let share = PI / omega / starts.len() as f64;
+            let share = self.orbits.span() / omega / starts.len() as f64;
             let states = starts.enumerate().map(|(number, y)| {
                 let (state, _) = shooting.coordinates.state(y);
                 State { time: number as f64 * share, ..state }
@@ -286,6 +319,11 @@ impl Curve for OrbitCurve<'_> {
         for ((out, image), next) in out.iter_mut().zip(images).zip(next) {
             *out = (image - next) / self.size;
         }
+        for (target, form) in &at.kept {
+            let moved =
+                form.iter().zip(z).zip(&self.reference).map(|((f, z), known)| f * (z - known));
+            out[all - self.orbits.size() + target] = moved.sum::<f64>() / self.size;
+        }
         let way = z.iter().zip(&self.reference).zip(&self.drift);
         out[all] = way.map(|((z, known), d)| d * (z - known)).sum::<f64>() / self.size;
     }
@@ -311,9 +349,10 @@ impl Curve for OrbitCurve<'_> {
         let count = at.segments.len();
         for (number, one) in at.segments.iter().enumerate() {
             let (first, next) = (number * size, (number + 1) % count * size);
-            // A segment lasts π/(m ω); the end of the last one is mirrored.
-            let mirrored = if number + 1 == count { 1.0 } else { -1.0 };
-            let shorter = mirrored * PI / (count as f64 * z[all] * z[all]) / self.size;
+            // A segment lasts π/(m ω), or 2π/(m ω); the end of the last one of half a period is mirrored.
+            let mirrored = if self.is_symmetric() && number + 1 == count { 1.0 } else { -1.0 };
+            let span = self.orbits.span();
+            let shorter = mirrored * span / (count as f64 * z[all] * z[all]) / self.size;
             for i in 0..size {
                 for j in 0..size {
                     out[(first + i, first + j)] = one.derivative[(i, j)] / self.size;
@@ -328,6 +367,11 @@ impl Curve for OrbitCurve<'_> {
         }
         for (j, d) in self.drift.iter().enumerate() {
             out[(all, j)] = d / self.size;
+        }
+        for (target, form) in &at.kept {
+            let row = all - size + target;
+            (0..z.len()).for_each(|j| out[(row, j)] = 0.0);
+            form.iter().enumerate().for_each(|(j, f)| out[(row, j)] = f / self.size);
         }
     }
 

@@ -6,9 +6,9 @@ use super::quadrature::Quadrature;
 use super::survey::Survey;
 use crate::balance::{Point, PointStatus};
 use crate::contact::PointState;
-use crate::fourier::{Harmonics, SampleTable};
+use crate::fourier::SampleTable;
 use crate::motion::{Flow, FlowEvent, ModalSystem, State};
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 /// Newton steps to the maximum of the DOF with which the period begins.
 const POLISH: usize = 4;
@@ -27,7 +27,8 @@ pub(super) fn postprocess(
     let starts = curve.states(z)?;
     curve.with_shooting(z, |member, _, _| {
         let system = &member.system;
-        let orbit = OrbitPostprocess { system, omega: *omega, starts };
+        let symmetric = curve.is_symmetric();
+        let orbit = OrbitPostprocess { system, omega: *omega, starts, symmetric };
         let begin = orbit.maximum(phase, table, quadrature)?;
         let all: Vec<usize> = (0..system.modes()).collect();
         let survey = orbit.pass(&begin, &all, table.harmonics().highest(), quadrature)?;
@@ -43,7 +44,7 @@ pub(super) fn postprocess(
     })
 }
 
-/// Where a pass over half a period begins.
+/// Where a pass over half a period, or a whole one of no symmetry, begins.
 struct Begin {
     /// Time after the start of the motion \[s\].
     time: f64,
@@ -52,15 +53,26 @@ struct Begin {
     state: State,
 }
 
-/// The motion over half a period, with the states from which its segments start.
+/// The motion over half a period, or a whole one of no symmetry, with the states from which its segments
+/// start.
 struct OrbitPostprocess<'a> {
     system: &'a ModalSystem,
     omega: f64,
     starts: Vec<State>,
+    symmetric: bool,
 }
 
 impl OrbitPostprocess<'_> {
-    /// One pass over half a period, completed by its mirror image.
+    /// How long the motion is given \[s\].
+    fn span(&self) -> f64 {
+        if self.symmetric {
+            PI / self.omega
+        } else {
+            TAU / self.omega
+        }
+    }
+
+    /// One pass over half a period, completed by its mirror image, or over a whole one.
     fn pass<'a>(
         &'a self,
         begin: &Begin,
@@ -68,27 +80,29 @@ impl OrbitPostprocess<'_> {
         highest: usize,
         quadrature: &'a mut Quadrature,
     ) -> Option<Survey<'a>> {
-        let mut survey = Survey::new(self.system, self.omega, true, highest, observe, quadrature);
+        let (system, symmetric) = (self.system, self.symmetric);
+        let mut survey = Survey::new(system, self.omega, symmetric, highest, observe, quadrature);
         let mut flow = Flow::new(self.system, self.omega);
-        let half = PI / self.omega;
+        let span = self.span();
+        let again = if symmetric { -begin.side } else { begin.side };
         let mut state = begin.state.clone();
         let mut see = |passage: FlowEvent<'_>| survey.include(&passage);
-        for (lap, side) in [(0.0, begin.side), (half, -begin.side)] {
+        for (lap, side) in [(0.0, begin.side), (span, again)] {
             // A single segment passes its end as it comes.
             for start in self.starts.iter().filter(|_| self.starts.len() > 1) {
                 let at = start.time + lap - begin.time;
-                if at > 0.0 && at < half {
+                if at > 0.0 && at < span {
                     flow.run(&mut state, at, &mut see).ok()?;
                     renew(&mut state, start, side);
                 }
             }
         }
-        flow.run(&mut state, half, &mut see).ok()?;
+        flow.run(&mut state, span, &mut see).ok()?;
         survey.finish();
         Some(survey)
     }
 
-    /// The state at a time of the first half of the period.
+    /// The state at a time of the motion given.
     fn state_at(&self, time: f64) -> Option<State> {
         let start = self.starts.iter().rev().find(|start| start.time <= time)?;
         let mut state = start.clone();
@@ -96,7 +110,8 @@ impl OrbitPostprocess<'_> {
         Some(state)
     }
 
-    /// The maximum of a DOF over the period: the mirror image of a minimum in the half.
+    /// The maximum of a DOF over the period, under symmetry also the mirror image of a minimum in the
+    /// half.
     fn maximum(
         &self,
         dof: usize,
@@ -111,9 +126,10 @@ impl OrbitPostprocess<'_> {
         table.harmonics().write_series(&series[..=highest], &mut values);
         let mut turns = Vec::new();
         table.turning_points(&values, &mut turns);
-        let most = turns.iter().max_by(|a, b| a.value.abs().total_cmp(&b.value.abs()))?;
+        let height = |value: f64| if self.symmetric { value.abs() } else { value };
+        let most = turns.iter().max_by(|a, b| height(a.value).total_cmp(&height(b.value)))?;
+        let side = if self.symmetric { most.value.signum() } else { 1.0 };
         let mut time = most.theta / self.omega;
-        let half = PI / self.omega;
         let mut state = self.state_at(time)?;
         for _ in 1..POLISH {
             let acceleration =
@@ -122,16 +138,16 @@ impl OrbitPostprocess<'_> {
                 |modal: &[f64]| -> f64 { system.shape(dof).zip(modal).map(|(s, q)| s * q).sum() };
             let step = of(&state.velocity) / of(&acceleration);
             // The series leads close to the extremum; a longer step would leave it.
-            if step.abs() < 0.01 * half {
+            if step.abs() < 0.01 * PI / self.omega {
                 time = (time - step).max(0.0);
             }
             state = self.state_at(time)?;
         }
         state.time = 0.0;
-        if most.value < 0.0 {
+        if side < 0.0 {
             mirror(&mut state);
         }
-        Some(Begin { time, side: most.value.signum(), state })
+        Some(Begin { time, side, state })
     }
 }
 
@@ -154,9 +170,4 @@ fn renew(state: &mut State, start: &State, side: f64) {
 fn mirror(state: &mut State) {
     state.parts().into_iter().flatten().for_each(|v| *v = -*v);
     state.points.iter_mut().for_each(|point| *point = point.mirrored());
-}
-
-/// Sample tables of odd harmonics.
-pub(super) fn odd_table(highest: usize) -> SampleTable {
-    SampleTable::new(Harmonics::new(highest, true))
 }

@@ -73,6 +73,14 @@ impl PeriodMap {
     /// # Errors
     /// A travelling wave, which has no motion of its own; an eigenvalue iteration that fails.
     pub fn new(model: &Model) -> Result<Self, Error> {
+        Self::damped(model, model.structure().damping())
+    }
+
+    /// The map of a model with another damping matrix.
+    ///
+    /// # Errors
+    /// As [`PeriodMap::new`].
+    pub(super) fn damped(model: &Model, damping: MatRef<'_, f64>) -> Result<Self, Error> {
         if model.is_travelling_wave() {
             return Err(Error::TravellingWave);
         }
@@ -80,7 +88,7 @@ impl PeriodMap {
         let held = ports.rows.transpose() * &ports.stiffness * &ports.rows;
         let stiffness = structure.stiffness() + held;
         let modes = modes(structure.mass(), stiffness.as_ref())?;
-        let damping = modes.damping(structure.damping());
+        let damping = modes.damping(damping);
         let size = modes.omega_squared.len();
         let full = damping.matrix();
         let coupled =

@@ -1,4 +1,5 @@
-//! Multiple shooting: half a period in segments, each from a state of its own.
+//! Multiple shooting: half a period, or without half-wave symmetry a whole one, in segments, each from a
+//! state of its own.
 //!
 //! Over one stretch a small change may grow beyond what the digits of its start can steer. Over
 //! segments it does not: their start states are unknowns, which the flow has to join (Ascher,
@@ -32,7 +33,7 @@ pub(super) struct Segment {
     pub(super) slipped: Vec<bool>,
 }
 
-/// Follows the motion over all segments of half a period from their start states, one after the
+/// Follows the motion over all segments from their start states, one after the
 /// other in `starts`.
 pub(super) fn follow(
     member: &Member<'_>,

@@ -29,6 +29,8 @@ pub(super) struct Shooting<'a> {
     /// Forces that the contacts remember beyond the number of strains.
     idle: usize,
     half_wave: bool,
+    /// Whether segments are those of half a period.
+    symmetric: bool,
     /// Symmetry of a travelling wave, and what it does to the coordinates.
     rotation: Option<(Rotation, Mat<f64>)>,
     period: f64,
@@ -78,6 +80,7 @@ impl<'a> Shooting<'a> {
             limits: system.limits(),
             idle: system.memories() - system.strains(),
             half_wave,
+            symmetric: half_wave,
             rotation: None,
             period,
             span: if half_wave { 0.5 * period } else { period },
@@ -103,11 +106,12 @@ impl<'a> Shooting<'a> {
         self.rotation = Some((rotation, rotation.matrix(&self.coordinates, system)));
     }
 
-    /// Confines the flow to one of `count` equal segments of half a period; the image of the last
-    /// one alone is mirrored.
+    /// Confines the flow to one of `count` equal segments of half a period, of which the image of the
+    /// last one alone is mirrored; or of the whole period without half-wave symmetry.
     pub(super) fn narrow(&mut self, number: usize, count: usize) {
-        self.span = 0.5 * self.period / count as f64;
-        self.half_wave = number + 1 == count;
+        let whole = if self.symmetric { 0.5 * self.period } else { self.period };
+        self.span = whole / count as f64;
+        self.half_wave = self.symmetric && number + 1 == count;
     }
 
     /// Whether each point has slipped in the last evaluation.
@@ -210,7 +214,7 @@ impl<'a> Shooting<'a> {
     /// Linear forms that the motion conserves while the points `slipped` alone slip, each with a
     /// coordinate that it determines: the slip of contacts that never do, and of one that but touches its
     /// limit in a plane, the part across.
-    fn conserved(&self, matrix: &Mat<f64>, slipped: &[bool]) -> Vec<(usize, Vec<f64>)> {
+    pub(super) fn conserved(&self, matrix: &Mat<f64>, slipped: &[bool]) -> Vec<(usize, Vec<f64>)> {
         let mut forms = self.coordinates.conserved(slipped);
         let system = self.coordinates.system();
         let side = if self.half_wave { -1.0 } else { 1.0 };

@@ -2,6 +2,8 @@
 
 use super::cycles::{Change, ChangeKind, LimitCycles};
 use super::limit_cycle::{CycleOrbits, OrbitCurve};
+use super::period_map::PeriodMap;
+use crate::model::FlutterModel;
 use crate::solve::{across, at_parameter, Curve as _};
 use faer::c64;
 use std::cell::Cell;
@@ -12,6 +14,10 @@ pub(super) const TRACING: f64 = 0.4;
 const ITERATIONS: usize = 12;
 /// Frequency of the exact orbit, relative to that of the balance it belongs to.
 const SAME: f64 = 0.02;
+/// Error of the multipliers of a map, …
+const MAPPED: f64 = 1e-6;
+/// … and distance of the largest from 1 that decides, in errors.
+const DECIDES: f64 = 3.0;
 /// Halvings of the interval in which stability changes.
 const HALVINGS: usize = 26;
 /// Change of the modulus of a multiplier across an interval this short that is a jump.
@@ -23,8 +29,10 @@ const REAL: f64 = 1e-6;
 #[derive(Debug, Clone)]
 pub(super) struct Floquet {
     pub(super) z: Vec<f64>,
-    /// Over half a period, mirrored, by falling modulus.
-    pub(super) half: Vec<c64>,
+    /// Over half a period, mirrored, or over a whole one of no symmetry, by falling modulus.
+    pub(super) span: Vec<c64>,
+    /// Whether it is half a period.
+    symmetric: bool,
     pub(super) neutral: usize,
     /// Whether the orbit is exact.
     pub(super) closed: bool,
@@ -44,18 +52,19 @@ impl Floquet {
 
     /// Of the orbit at a point of a curve.
     pub(super) fn of(curve: &OrbitCurve<'_>, z: Vec<f64>, closed: bool) -> Option<Self> {
-        let (half, neutral) = curve.multipliers(&z)?;
-        Some(Self { z, half, neutral, closed })
+        let (span, neutral) = curve.multipliers(&z)?;
+        Some(Self { z, span, symmetric: curve.is_symmetric(), neutral, closed })
     }
 
     /// Over the full period, those of contacts that never slip first.
     pub(super) fn multipliers(&self) -> Vec<c64> {
         let ones = std::iter::repeat_n(c64::new(1.0, 0.0), self.neutral);
-        ones.chain(self.half.iter().map(|m| m * m)).collect()
+        let whole = |m: &c64| if self.symmetric { m * m } else { *m };
+        ones.chain(self.span.iter().map(whole)).collect()
     }
 
     fn unstable(&self) -> usize {
-        self.half.iter().filter(|m| m.norm() >= 1.0).count()
+        self.span.iter().filter(|m| m.norm() >= 1.0).count()
     }
 }
 
@@ -107,10 +116,45 @@ pub(super) fn judge(
     }
     for pair in known.windows(2) {
         let [(at, before), (_, after)] = pair else { continue };
-        let [a, b] = [before, after].map(|f| f.half.iter().filter(|m| m.norm() >= 1.0).count());
+        let [a, b] = [before, after].map(Floquet::unstable);
         if a != b && !interrupted() {
             out.changes.push(change(&mut curve, before, after, *at));
         }
+    }
+}
+
+/// Multipliers of cycles without symmetry, by the map over a period that is linearised along the
+/// balance. They stay unknown where contacts touch their limit, and where the map does not tell on which
+/// side of 1 the largest lies: that of the phase, which has to be 1, says how far to trust it.
+pub(super) fn judge_along(
+    family: &FlutterModel<'_>,
+    out: &mut LimitCycles,
+    interrupted: &dyn Fn() -> bool,
+    share: &Cell<f64>,
+) {
+    let Some(negative) = family.negative() else { return };
+    let total = out.cycles.len() as f64;
+    for (index, cycle) in out.cycles.iter_mut().enumerate() {
+        share.set(TRACING + (1.0 - TRACING) * index as f64 / total);
+        if interrupted() {
+            return;
+        }
+        let Ok(model) = family.at(cycle.value) else { continue };
+        let damping = model.structure().damping() + faer::Scale(cycle.ratio) * negative;
+        let Ok(map) = PeriodMap::damped(&model, damping.as_ref()) else { continue };
+        let map = map.assuming(family.residual());
+        let Some(motion) = cycle.response.unknowns() else { continue };
+        let found = map.multipliers(cycle.response.omega, motion, Some(MAPPED));
+        let Some(mut values) = found.map(|found| found.values) else { continue };
+        let off = |m: &c64| (m - c64::new(1.0, 0.0)).norm();
+        let phase = (0..values.len()).min_by(|&i, &j| off(&values[i]).total_cmp(&off(&values[j])));
+        let Some(phase) = phase.map(|at| values.remove(at)) else { continue };
+        let largest = values.first().map_or(0.0, |m| m.norm());
+        if (largest - 1.0).abs() <= DECIDES * off(&phase).max(MAPPED) {
+            continue;
+        }
+        values.resize(cycle.multipliers.len(), c64::new(0.0, 0.0));
+        cycle.multipliers = values;
     }
 }
 
@@ -154,7 +198,7 @@ fn change(
 fn kind(low: &Floquet, high: &Floquet) -> ChangeKind {
     let off = |m: &c64| (m.norm() - 1.0).abs();
     let critical =
-        |orbit: &Floquet| orbit.half.iter().copied().min_by(|a, b| off(a).total_cmp(&off(b)));
+        |orbit: &Floquet| orbit.span.iter().copied().min_by(|a, b| off(a).total_cmp(&off(b)));
     let (Some(a), Some(b)) = (critical(low), critical(high)) else { return ChangeKind::Grazing };
     if off(&a).max(off(&b)) > JUMP {
         return ChangeKind::Grazing;
@@ -162,8 +206,10 @@ fn kind(low: &Floquet, high: &Floquet) -> ChangeKind {
     let angle = b.arg().abs();
     if angle < REAL {
         ChangeKind::Fold
-    } else if angle > std::f64::consts::PI - REAL {
+    } else if angle > std::f64::consts::PI - REAL && low.symmetric {
         ChangeKind::Symmetry
+    } else if angle > std::f64::consts::PI - REAL {
+        ChangeKind::PeriodDoubling
     } else {
         ChangeKind::ComplexPair
     }

@@ -4,12 +4,13 @@
 //! | damping and negative damping | form |
 //! |---|---|
 //! | both diagonal in the modes of the free structure | a sum over modes |
-//! | any other; a travelling wave | one complex factorisation per harmonic |
+//! | any other; motions with a mean; a travelling wave | one complex factorisation per harmonic |
 
 use super::cyclic::CyclicStructure;
 use super::modes::{complex, modes, RealModes};
 use super::{
-    Compliance, DirectCompliance, ModalCompliance, Outline, Receptance, Request, Structure,
+    Compliance, DirectCompliance, HarmonicLoad, ModalCompliance, Outline, Receptance, Request,
+    Structure,
 };
 use crate::Error;
 use faer::{c64, Mat, MatRef};
@@ -53,6 +54,8 @@ enum Form {
 pub struct FlutterCompliance {
     form: Form,
     whole: Arc<Matrices>,
+    /// Static loads that stay; none at first.
+    loads: Vec<HarmonicLoad>,
 }
 
 impl FlutterCompliance {
@@ -80,7 +83,7 @@ impl FlutterCompliance {
         let law = law && structure.is_proportional();
         let form = separate(&free, structure.damping(), negative, rows, law)
             .map_or(Form::Whole, |modes| Form::Modes(Box::new(modes)));
-        Ok(Self { form, whole })
+        Ok(Self { form, whole, loads: Vec::new() })
     }
 
     /// Of a sector in a travelling wave, with its rows on itself and on the next sector, and one
@@ -108,7 +111,18 @@ impl FlutterCompliance {
         }
         let fundamental = cyclic.diameter(1);
         let whole = Arc::clone(&waves[fundamental]);
-        Ok(Self { form: Form::Wave(waves, fundamental), whole })
+        Ok(Self { form: Form::Wave(waves, fundamental), whole, loads: Vec::new() })
+    }
+
+    /// The same for motions with a mean, which free modes do not give, under loads; of a travelling wave
+    /// those on sector 0.
+    #[must_use]
+    pub fn with_means(mut self, loads: Vec<HarmonicLoad>) -> Self {
+        if matches!(self.form, Form::Modes(_)) {
+            self.form = Form::Whole;
+        }
+        self.loads = loads;
+        self
     }
 
     /// Number of contact displacements.
@@ -146,12 +160,16 @@ impl FlutterCompliance {
     pub fn at(&self, ratio: f64, stiffness: Mat<f64>) -> Arc<dyn Compliance> {
         match &self.form {
             Form::Modes(modes) => Arc::new(modes.at_ratio(ratio, stiffness)),
-            Form::Whole => Arc::new(self.whole.at_ratio(ratio, &complex(stiffness.as_ref()))),
+            Form::Whole => {
+                let loads = self.loads.clone();
+                Arc::new(self.whole.at_ratio(ratio, &complex(stiffness.as_ref()), loads))
+            }
             Form::Wave(waves, fundamental) => Arc::new(FlutterWaves {
                 waves: waves.iter().map(|wave| (Arc::clone(wave), OnceLock::new())).collect(),
                 fundamental: *fundamental,
                 ratio,
                 stiffness: complex(stiffness.as_ref()),
+                loads: self.loads.clone(),
                 outline: Outline::default(),
             }),
         }
@@ -220,13 +238,14 @@ struct FlutterWaves {
     fundamental: usize,
     ratio: f64,
     stiffness: Mat<c64>,
+    loads: Vec<HarmonicLoad>,
     outline: Outline,
 }
 
 impl FlutterWaves {
     fn wave(&self, harmonic: usize) -> &DirectCompliance {
         let (matrices, wave) = &self.waves[(harmonic * self.fundamental) % self.waves.len()];
-        wave.get_or_init(|| matrices.at_ratio(self.ratio, &self.stiffness))
+        wave.get_or_init(|| matrices.at_ratio(self.ratio, &self.stiffness, self.loads.clone()))
     }
 }
 
@@ -258,10 +277,15 @@ impl Matrices {
         &self.stiffness + self.rows.adjoint() * (stiffness * &self.rows)
     }
 
-    fn at_ratio(&self, ratio: f64, stiffness: &Mat<c64>) -> DirectCompliance {
+    fn at_ratio(
+        &self,
+        ratio: f64,
+        stiffness: &Mat<c64>,
+        loads: Vec<HarmonicLoad>,
+    ) -> DirectCompliance {
         let damping = &self.damping + faer::Scale(c64::new(ratio, 0.0)) * &self.negative;
         let matrices = [self.mass.clone(), damping, self.restrained(stiffness)];
-        DirectCompliance::of_matrices(matrices, self.rows.clone(), Vec::new())
+        DirectCompliance::of_matrices(matrices, self.rows.clone(), loads)
             .with_negative(self.negative.clone())
     }
 }

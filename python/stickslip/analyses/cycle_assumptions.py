@@ -19,12 +19,14 @@ def cycle_assumptions(
     onset, omega = solution.onset
     dof = model.structure.dofs[solution.phase_dof]
     sides = zip(("sticking", "slipping"), solution.ends, strict=True)
+    biased = model.problem.biased()
+    ignored = any(force.amplitude and (force.harmonic or not biased) for force in model.forces)
     returned = any(end == "returned" for end, _ in solution.ends)
     return present(
         (
-            told("onset", mode=settings.mode, omega=omega, ratio=onset),
-            told("half-wave", _dof=dof),
-            any(force.amplitude for force in model.forces) and told("forces-ignored"),
+            told("onset/rest" if biased else "onset", mode=settings.mode, omega=omega, ratio=onset),
+            told("half-wave/full" if biased else "half-wave", _dof=dof),
+            ignored and told("forces-ignored/static" if biased else "forces-ignored"),
             *_stability(model, settings, arrays),
             *(
                 _end(model, settings, arrays, end, float(value), side)
@@ -71,7 +73,7 @@ def _stability(
 
 
 def _truncation(model: Model, settings: CycleSettings, arrays: CycleArrays) -> Diagnostic | None:
-    size = np.abs(arrays.displacement).max(axis=1)
+    size = np.abs(arrays.displacement[:, 1:]).max(axis=1)
     share = arrays.error_estimate / np.maximum(size, 0.02 * size.max(axis=1, keepdims=True))
     worst = float(np.where(np.isnan(share), 0.0, share).max(initial=0.0))
     if not worst > settings.tolerance:

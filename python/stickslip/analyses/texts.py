@@ -220,9 +220,14 @@ TEXTS = {
     # limit cycles
     "onset": "Mode {mode}, stuck at {omega:.6g} rad/s, loses its damping at r = {ratio:.6g} with "
     "all contacts stuck: its limit cycles begin there.",
+    "onset/rest": "Mode {mode}, at {omega:.6g} rad/s with the contacts as they are at rest, loses "
+    "its damping at r = {ratio:.6g}: its limit cycles begin there.",
+    "half-wave/full": "Motions are solved for with their means and all harmonics. t = 0 is the "
+    "maximum of {_dof!r}.",
     "half-wave": "Motions are half-wave symmetric, x(t + T/2) = -x(t); cycles that break this "
     "symmetry are not looked for. t = 0 is the maximum of {_dof!r}.",
     "forces-ignored": "The forces of the model are left out.",
+    "forces-ignored/static": "The forces of the model are left out, but for static ones.",
     "stability-undecided/wave": "Stability is not decided: one sector of a wave has no motion of "
     "its own.",
     "stability-undecided/left out": "Stability is not decided: it was left out.",

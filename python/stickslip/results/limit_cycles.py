@@ -53,7 +53,8 @@ class StabilityChange(NamedTuple):
     """Angular frequency [rad/s]."""
     kind: str
     """"fold" (a multiplier passes 1), "complex pair", "symmetry" (a multiplier passes 1 with motion
-    that breaks x(t + T/2) = -x(t)), or "grazing" (multipliers jump with a change in slip)."""
+    that breaks x(t + T/2) = -x(t)), "grazing" (multipliers jump with a change in slip), or "period
+    doubling" (a multiplier passes -1)."""
     after: int
     """Position of the cycle before it."""
     unstable_before: int
@@ -62,7 +63,7 @@ class StabilityChange(NamedTuple):
     """The same after it."""
 
 
-CHANGE_KINDS = ("fold", "complex pair", "symmetry", "grazing")
+CHANGE_KINDS = ("fold", "complex pair", "symmetry", "grazing", "period doubling")
 """What can happen where stability changes."""
 
 
@@ -174,7 +175,7 @@ class LimitCycles(PeriodicMotions, FloquetStability):
     def amplitude(self, dof: str, measure: Measure = "half_range") -> Float:
         """Return the amplitude of a displacement along the branch.
 
-        Half range and maximum are equal for these symmetric motions.
+        Half range and maximum are equal for motions that are symmetric.
         """
         choice(measure, "measure", get_args(Measure))
         column = self._column(dof)
@@ -204,7 +205,8 @@ class LimitCycles(PeriodicMotions, FloquetStability):
     def model_at(self, index: int) -> Model:
         """Return the model whose limit cycle one point is, with the damping C + r C_neg in it.
 
-        Without forces, for `stickslip.transient` and any other analysis.
+        Without forces, but for static ones where these decide what contacts do, for
+        `stickslip.transient` and any other analysis.
 
         Raises ModelError if the model is a sector of a travelling wave.
         """
@@ -215,7 +217,8 @@ class LimitCycles(PeriodicMotions, FloquetStability):
         position, model = self.position(index), self.model
         if self.settings.variation is not None:
             model = self.settings.variation.apply(model, float(self.values[position]))
-        free = Model(model.structure, model.contacts)
+        static = [force for force in model.forces if force.harmonic == 0]
+        free = Model(model.structure, model.contacts, static if model.problem.biased() else ())
         return destabilised(free, self.negative_damping, float(self.ratio[position]))
 
     def _words(self) -> Mapping[str, str]:

@@ -1,0 +1,142 @@
+//! The highest of several motions at a frequency.
+//!
+//! Where laws are not monotone, a point solved by itself may be any of them. Neighbouring samples that no
+//! one smooth curve goes through however short their interval becomes, or a search without an answer, say
+//! that there are several: then the curve is
+//! followed around its folds by arclength, and the search begins again from its largest motions. What is
+//! higher on the curve than what that finds leaves the highest point in doubt.
+
+use super::global_peak::PeakSearch;
+use super::samples::Sample;
+use super::search::{Doubt, Found, Search};
+use crate::balance::{sweep_range, ForcedBalance, PointStatus, Resolution};
+use crate::model::Model;
+use crate::solve::norm;
+use crate::Error;
+
+/// What two neighbours may differ beyond the mean of their slopes, relative to the larger.
+const TORN: f64 = 0.25;
+/// Halvings of an interval after which they are on different branches.
+const HALVINGS: usize = 8;
+/// Tolerance of the curve's steps, if that of the harmonics is not larger.
+const STEPS: f64 = 0.01;
+/// What the curve may be higher than what is found: its harmonics and steps.
+const HIGHER: f64 = 2e-3;
+
+/// Whether a smooth curve goes from one sample to another, as far as their slopes tell.
+fn are_joined(a: &Sample, b: &Sample) -> bool {
+    let half = 0.5 * (b.at - a.at);
+    let (from, to) = (a.unknowns.values(), b.unknowns.values());
+    let ways = from.iter().zip(to).zip(a.rate.iter().zip(&b.rate));
+    let missed: Vec<f64> = ways.map(|((x, y), (dx, dy))| y - x - half * (dx + dy)).collect();
+    from.len() == to.len() && norm(&missed) <= TORN * norm(from).max(norm(to))
+}
+
+impl Search<'_, '_> {
+    /// Whether some neighbours are on different branches: shorter intervals do not join them.
+    ///
+    /// # Errors
+    /// As for a solution at one frequency.
+    pub(super) fn is_torn(&mut self) -> Result<bool, Error> {
+        for right in 1..self.envelope.samples.len() {
+            let [mut a, mut b] = [right - 1, right].map(|i| self.envelope.samples[i].clone());
+            let mut halvings = 0;
+            while !are_joined(&a, &b) {
+                let Some(middle) = self.between(&a, &b)?.filter(|_| halvings < HALVINGS) else {
+                    return Ok(true);
+                };
+                if are_joined(&a, &middle) {
+                    a = middle;
+                } else {
+                    b = middle;
+                }
+                halvings += 1;
+            }
+        }
+        Ok(false)
+    }
+}
+
+/// The largest motions of a curve.
+pub(super) struct Uppermost {
+    /// By frequency.
+    pub(super) samples: Vec<Sample>,
+    /// What each group reaches on the curve.
+    pub(super) heights: Vec<f64>,
+}
+
+impl PeakSearch<'_> {
+    /// The largest motions of the curve over the range; nothing if the analysis is to end, or the curve has no two points.
+    pub(super) fn upper_branch(
+        &mut self,
+        model: &Model,
+        resolution: Resolution,
+    ) -> Result<Option<Uppermost>, Error> {
+        let dofs = self.quest.groups.concat();
+        let mut settings = self.settings.at(resolution);
+        settings.tolerance = settings.tolerance.max(STEPS);
+        let balance = ForcedBalance::new(model, settings, &dofs)?.watched(self.progress);
+        let (low, high) = self.quest.span;
+        let curve = sweep_range(balance, low, high)?;
+        self.points += curve.points.len();
+        self.memory.profile.add(&curve.profile);
+        if curve.interrupted {
+            return Ok(None);
+        }
+        let mut balance = ForcedBalance::new(model, settings, &[])?.watched(self.progress);
+        let mut samples = Vec::with_capacity(curve.points.len());
+        let aim = self.aim();
+        let mut search = Search::new(settings.residual, &aim, &mut balance);
+        for point in curve.points.iter().filter(|point| point.is_solved()) {
+            samples.extend(search.sampled(point)?);
+        }
+        let mut first = 0;
+        let heights = self.quest.groups.iter().map(|group| {
+            let own = first..first + group.len();
+            first = own.end;
+            let heights = samples.iter().flat_map(|one| &one.knots[own.clone()]);
+            heights.map(|knot| knot.height).fold(0.0, f64::max)
+        });
+        let heights = heights.collect();
+        let largest = uppermost(samples);
+        Ok((largest.len() > 1).then_some(Uppermost { samples: largest, heights }))
+    }
+}
+
+/// Those of the samples along a curve above which the curve does not pass, by frequency.
+fn uppermost(samples: Vec<Sample>) -> Vec<Sample> {
+    let sizes: Vec<f64> = samples.iter().map(|one| norm(one.unknowns.values())).collect();
+    let passes_above = |i: usize| {
+        (0..samples.len().saturating_sub(1)).filter(|&q| q != i && q + 1 != i).any(|q| {
+            let (a, b) = (samples[q].at, samples[q + 1].at);
+            let share = (samples[i].at - a) / (b - a);
+            (0.0..=1.0).contains(&share) && sizes[q] + share * (sizes[q + 1] - sizes[q]) > sizes[i]
+        })
+    };
+    let kept: Vec<bool> = (0..samples.len()).map(|i| !passes_above(i)).collect();
+    let mut out: Vec<Sample> =
+        samples.into_iter().zip(kept).filter_map(|(one, kept)| kept.then_some(one)).collect();
+    out.sort_by(|a, b| a.at.total_cmp(&b.at));
+    out.dedup_by(|b, a| b.at == a.at);
+    out
+}
+
+/// Of two searches the one whose highest points are those of the curve: Newton's method may have met motions
+/// that no curve joins to it. Groups of which the curve is higher are in doubt.
+pub(super) fn nearer(before: Found, again: Found, heights: &[f64]) -> Found {
+    let height = |found: &Found, group: usize| match &found.tops[group] {
+        Ok(top) => found.samples[top.sample].knots[top.curve].height,
+        Err(_) => 0.0,
+    };
+    let off = |found: &Found| -> f64 {
+        let groups = heights.iter().enumerate();
+        groups.map(|(group, known)| (height(found, group) / known - 1.0).abs()).sum()
+    };
+    let mut best = if off(&before) < off(&again) { before } else { again };
+    for (group, known) in heights.iter().enumerate() {
+        if best.tops[group].is_ok() && *known > (1.0 + HIGHER) * height(&best, group) {
+            best.tops[group] = Err(Doubt::unsolved(PointStatus::Stalled));
+        }
+    }
+    best
+}

@@ -1,0 +1,46 @@
+"""Peaks where a frequency has several motions: what the curve over its folds reaches."""
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+
+
+def chain(contacts, force):
+    mass = np.diag([1.889, 0.911, 0.59, 0.966])
+    stiffness = [
+        [25530.8, -13912.5, 0.0, 0.0],
+        [-13912.5, 40349.1, -14065.0, 0.0],
+        [0.0, -14065.0, 31204.2, -7674.8],
+        [0.0, 0.0, -7674.8, 14414.8],
+    ]
+    dofs = ["d0", "d1", "d2", "d3"]
+    structure = ss.Structure(mass, stiffness, 1.934 * mass, dofs)
+    return ss.Model(structure, contacts, [ss.Force("d0", force)])
+
+
+@pytest.fixture(scope="module")
+def behind_a_gap():
+    """A contact that closes once per cycle; the upper branch begins behind a fold."""
+    pad = ss.Coulomb(
+        ["d0", "d1"],
+        normal=[0.92824, np.sqrt(1 - 0.92824**2)],
+        friction=0.44637,
+        tangential_stiffness=5639.32,
+        normal_stiffness=29443.7,
+        gap=0.0153094,
+        name="pad",
+    )
+    return chain([pad], 20.331)
+
+
+SPAN = (40.75, 135.84)
+
+
+def test_damper_curves_find_the_branch_behind_a_fold(behind_a_gap):
+    curve = ss.forced_response(behind_a_gap, SPAN)
+    assert len(curve.folds) >= 2
+    peak = curve.peak("d0")
+    damper = ss.damper_curve(behind_a_gap, friction=[0.44637], dof="d0", omega=SPAN)
+    assert damper.amplitude[0] == pytest.approx(peak.amplitude, rel=2e-3)
+    assert damper.omega[0] == pytest.approx(peak.omega, rel=2e-3)
