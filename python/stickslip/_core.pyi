@@ -227,6 +227,7 @@ def damper_curve(
     values: Float,
     settings: DamperSettings,
     progress: Progress,
+    bounds: bool | None = None,
 ) -> Peaks: ...
 def optimal_damper(
     problem: Problem,
