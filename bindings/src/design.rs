@@ -12,7 +12,7 @@ use std::sync::Arc;
 use stickslip_core::balance::{Cause, Linearised, Unknowns};
 use stickslip_core::contact::Residual;
 use stickslip_core::design::{
-    bounded_peak_curve, optimum, peak_curve, Curve, Peak, PeakBounds, Target,
+    self, bounded_peak_curve, optimum, peak_curve, Cell, Curve, Peak, PeakBounds, Target,
 };
 use stickslip_core::fourier::{Harmonics, Measure, SampleTable};
 use stickslip_core::model::Variation;
@@ -90,6 +90,25 @@ pub fn optimal_damper<'py>(
         optimum(&model, settings, &variation, bounds, &target, look)
     })?;
     Ok([written(py, &found.minima, &found.curve)?, written(py, &found.curve.peaks, &found.curve)?])
+}
+
+/// A problem of a map, with its settings and the DOF whose peak is sought.
+type CellOf<'py> = (PyRef<'py, Problem>, Bound<'py, PyAny>, usize);
+
+/// Amplitude, frequency and harmonics of the peaks of all problems of a map.
+#[pyfunction]
+pub fn peak_map(
+    py: Python<'_>,
+    cells: Vec<CellOf<'_>>,
+    grid: Vec<f64>,
+    threads: usize,
+) -> PyResult<Vec<(f64, f64, usize)>> {
+    let cell = |(problem, settings, dof): CellOf<'_>| {
+        Ok((Arc::clone(&problem.model), harmonic(&settings)?, dof))
+    };
+    let cells: Vec<Cell> = cells.into_iter().map(cell).collect::<PyResult<_>>()?;
+    let peaks = watch::whole(py, move |look| design::peak_map(&cells, &grid, threads, look))?;
+    Ok(peaks.iter().map(|peak| (peak.amplitude, peak.omega, peak.harmonics)).collect())
 }
 
 /// What amplitudes are differentiated by: "omega", "level", or a parameter of a contact or of one of

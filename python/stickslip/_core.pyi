@@ -229,6 +229,9 @@ def damper_curve(
     progress: Progress,
     bounds: bool | None = None,
 ) -> Peaks: ...
+def peak_map(
+    cells: Sequence[tuple[Problem, HarmonicSettings, int]], grid: Float, threads: int
+) -> list[tuple[float, float, int]]: ...
 def optimal_damper(
     problem: Problem,
     variation: Varied,
