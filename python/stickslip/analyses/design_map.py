@@ -34,7 +34,7 @@ def design_map(
 
     Resonances of a model are located on a coarse grid with three harmonics; the highest ones are
     then solved on ever narrower grids with twice the harmonics each, until the peak stays the same
-    within the tolerance. Unlike with `damper_curve` whatever `build` makes may vary: mass, angle,
+    within the tolerance, which is above its error estimate. Unlike with `damper_curve` whatever `build` makes may vary: mass, angle,
     speed, geometry.
 
     Parameters
@@ -50,7 +50,8 @@ def design_map(
     points : int, optional
         Frequencies of the coarse grid. A resonance much narrower than their distance may be missed.
     tolerance : float, optional
-        Change of the peak, relative to it, with twice the harmonics that counts as none.
+        Change of the peak, relative to it, with twice the harmonics that counts as none, and the
+        error estimate that is small enough.
     max_harmonics : int, optional
         Harmonics at which a peak is given up: it counts as not found.
     threads : int, optional
