@@ -34,8 +34,8 @@ def design_map(
 
     Resonances of a model are located on a coarse grid with three harmonics; the highest ones are
     then solved on ever narrower grids with twice the harmonics each, until the peak stays the same
-    within the tolerance, which is above its error estimate. Unlike with `damper_curve` whatever `build` makes may vary: mass, angle,
-    speed, geometry.
+    within the tolerance, which is above its error estimate. Unlike with `damper_curve` whatever
+    `build` makes may vary: mass, angle, speed, geometry.
 
     Parameters
     ----------
