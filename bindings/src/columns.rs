@@ -178,13 +178,8 @@ impl<'py> Columns<'py> {
         let values = |of: fn(&AmplitudeBounds) -> &[f64]| all().map(move |b| b.map_or(&[][..], of));
         self.numbers("lower", observed, values(|bounds| &bounds.lower))?;
         self.numbers("upper", observed, values(|bounds| &bounds.upper))?;
-        let code = |bounds: &AmplitudeBounds| match bounds.unique {
-            Uniqueness::Unique => 0_u8,
-            Uniqueness::Residual => 1,
-            Uniqueness::Shakedown => 2,
-            Uniqueness::NotFound => 4,
-        };
-        self.one("unique", all().map(|bounds| bounds.map_or(3, code)))?;
+        let unique = all().map(|bounds| uniqueness_code(bounds.map(|bounds| bounds.unique)));
+        self.one("unique", unique)?;
         self.one("guaranteed", all().map(|bounds| bounds.is_some_and(|bounds| bounds.proved)))
     }
 
@@ -216,6 +211,17 @@ fn filled<T: Clone, R: IntoIterator<Item = T>>(
         values.resize(count * width, missing.clone());
     }
     (count, values)
+}
+
+/// Number of what is known of residual tractions, as Python knows it; `None` where it was not asked.
+pub fn uniqueness_code(unique: Option<Uniqueness>) -> u8 {
+    match unique {
+        Some(Uniqueness::Unique) => 0,
+        Some(Uniqueness::Residual) => 1,
+        Some(Uniqueness::Shakedown) => 2,
+        None => 3,
+        Some(Uniqueness::NotFound) => 4,
+    }
 }
 
 /// Number of what is known of the stability of a motion, as Python knows it.

@@ -1,7 +1,7 @@
 //! Damper design: peaks along a parameter, the least of them, and sensitivities.
 
 use crate::arrays::{series, table, Array3};
-use crate::columns::Columns;
+use crate::columns::{uniqueness_code, Columns};
 use crate::problem::Problem;
 use crate::settings::{evaluated, get, harmonic, measure, residual, variation};
 use crate::watch;
@@ -11,7 +11,9 @@ use pyo3::prelude::*;
 use std::sync::Arc;
 use stickslip_core::balance::{Cause, Linearised, Unknowns};
 use stickslip_core::contact::Residual;
-use stickslip_core::design::{optimum, peak_curve, Curve, Peak, Target};
+use stickslip_core::design::{
+    self, bounded_peak_curve, optimum, peak_curve, Cell, Curve, Peak, PeakBounds, Target,
+};
 use stickslip_core::fourier::{Harmonics, Measure, SampleTable};
 use stickslip_core::model::Variation;
 use stickslip_core::Model;
@@ -28,6 +30,12 @@ fn written<'py>(py: Python<'py>, peaks: &[Peak], curve: &Curve) -> PyResult<Boun
     columns.one("harmonics", peaks().map(|p| p.harmonics as i64))?;
     columns.one("at_edge", peaks().map(|p| p.at_edge))?;
     columns.one("status", peaks().map(|p| p.status as u8))?;
+    let bound =
+        |of: fn(&PeakBounds) -> f64| peaks().map(move |p| p.bounds.as_ref().map_or(f64::NAN, of));
+    columns.one("lower", bound(|bounds| bounds.lower))?;
+    columns.one("upper", bound(|bounds| bounds.upper))?;
+    columns.one("unique", peaks().map(|p| uniqueness_code(p.bounds.map(|one| one.unique))))?;
+    columns.one("guaranteed", peaks().map(|p| p.bounds.is_some_and(|bounds| bounds.proved)))?;
     columns.tell("interrupted", curve.interrupted)?;
     columns.effort(&curve.profile, ("points", curve.points))?;
     columns.end()
@@ -39,8 +47,10 @@ fn target(settings: &Bound<'_, PyAny>, dof: usize) -> PyResult<Target> {
     Ok(Target { dof, measure, span: get(settings, "span")? })
 }
 
-/// The peak at every value of a parameter.
+/// The peak at every value of a parameter. `bounds` asks for those over the residual tractions, and
+/// tells whether one vibration alone is known to exist.
 #[pyfunction]
+#[pyo3(signature = (problem, variation, dof, values, settings, progress, bounds=None))]
 pub fn damper_curve<'py>(
     py: Python<'py>,
     problem: &Problem,
@@ -49,11 +59,16 @@ pub fn damper_curve<'py>(
     values: Vec<f64>,
     settings: &Bound<'_, PyAny>,
     progress: Option<Py<PyAny>>,
+    bounds: Option<bool>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let (target, settings) = (target(settings, dof)?, harmonic(settings)?);
     let model = Arc::clone(&problem.model);
-    let curve = watch::computed(py, progress, move |look| {
-        peak_curve(&model, settings, &variation, &values, &target, look)
+    let curve = watch::computed(py, progress, move |look| match bounds {
+        None => peak_curve(&model, settings, &variation, &values, &target, look),
+        Some(proved) => {
+            let asked = (&values[..], proved);
+            bounded_peak_curve(&model, settings, &variation, asked, &target, look)
+        }
     })?;
     written(py, &curve.peaks, &curve)
 }
@@ -75,6 +90,25 @@ pub fn optimal_damper<'py>(
         optimum(&model, settings, &variation, bounds, &target, look)
     })?;
     Ok([written(py, &found.minima, &found.curve)?, written(py, &found.curve.peaks, &found.curve)?])
+}
+
+/// A problem of a map, with its settings and the DOF whose peak is sought.
+type CellOf<'py> = (PyRef<'py, Problem>, Bound<'py, PyAny>, usize);
+
+/// Amplitude, frequency and harmonics of the peaks of all problems of a map.
+#[pyfunction]
+pub fn peak_map(
+    py: Python<'_>,
+    cells: Vec<CellOf<'_>>,
+    grid: Vec<f64>,
+    threads: usize,
+) -> PyResult<Vec<(f64, f64, usize)>> {
+    let cell = |(problem, settings, dof): CellOf<'_>| {
+        Ok((Arc::clone(&problem.model), harmonic(&settings)?, dof))
+    };
+    let cells: Vec<Cell> = cells.into_iter().map(cell).collect::<PyResult<_>>()?;
+    let peaks = watch::whole(py, move |look| design::peak_map(&cells, &grid, threads, look))?;
+    Ok(peaks.iter().map(|peak| (peak.amplitude, peak.omega, peak.harmonics)).collect())
 }
 
 /// What amplitudes are differentiated by: "omega", "level", or a parameter of a contact or of one of

@@ -29,7 +29,7 @@ mod _core {
     use crate::{
         arrays::TooFastError,
         contacts::{contact_force, contact_phases},
-        design::{damper_curve, optimal_damper, sensitivity},
+        design::{damper_curve, optimal_damper, peak_map, sensitivity},
         fates::fates,
         limit_cycles::{limit_cycles, period_multipliers},
         mistuning::{mistuning_study, summits, TunedDisk},

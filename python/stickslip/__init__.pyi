@@ -161,7 +161,7 @@ def damper_curve(
     common: Literal["value", "factor"] = "value",
     contacts: Contacts | None = None,
     max_iterations: int = 100,
-    residual: Literal["centred", "from_rest"] | float | None = None,
+    residual: Literal["centred", "from_rest", "bounds"] | float | None = None,
     harmonics: int | Literal["auto"] = "auto",
     tolerance: float = 0.001,
     max_harmonics: int = 255,

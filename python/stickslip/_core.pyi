@@ -228,7 +228,11 @@ def damper_curve(
     values: Float,
     settings: DamperSettings,
     progress: Progress,
+    bounds: bool | None = None,
 ) -> Peaks: ...
+def peak_map(
+    cells: Sequence[tuple[Problem, HarmonicSettings, int]], grid: Float, threads: int
+) -> list[tuple[float, float, int]]: ...
 def optimal_damper(
     problem: Problem,
     variation: Varied,

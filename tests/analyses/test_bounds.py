@@ -10,7 +10,7 @@ from stickslip.study import Study
 SEARCH = 1e-5  # what the search leaves, relative to the amplitude
 
 
-def pads(*, damping=0.25, force=3.0):
+def pads(*, damping=0.25, force=3.0, tilt=0.3):
     """Two bodies, each on a plane that its own normal motion presses."""
     stiffness = np.diag([260.0, 310.0, 240.0, 350.0])
     for i, j, k in ((0, 1, 60.0), (1, 2, 50.0), (2, 3, 80.0), (0, 3, 40.0)):
@@ -22,7 +22,7 @@ def pads(*, damping=0.25, force=3.0):
     contacts = [
         ss.Coulomb(
             [f"{body}.x", f"{body}.z"],
-            normal=[0.3, np.sqrt(0.91)],
+            normal=[tilt, np.sqrt(1.0 - tilt**2)],
             friction=friction,
             tangential_stiffness=k,
             normal_stiffness=250.0,
@@ -129,7 +129,7 @@ def test_plain_curves_have_none():
     with pytest.raises(ss.ModelError, match=r"^residual: its bounds were not computed; give resid"):
         frf.lower("a.x")
     with pytest.raises(ss.ModelError, match=r"^residual: unknown choice 'bounds'"):
-        ss.damper_curve(pads(), friction=[0.3], dof="a.x", residual="bounds")
+        ss.optimal_damper(pads(), parameter="friction", dof="a.x", residual="bounds")
 
 
 def test_a_contact_in_space():
@@ -264,3 +264,79 @@ def test_a_structural_damper_beside_a_normal_load_that_varies():
         other = ss.forced_response(model, GRID[::3], 5, residual=residual, observe=["a.x"])
         assert (other.amplitude("a.x") <= upper * (1.0 + SEARCH)).all()
         assert (other.amplitude("a.x") >= lower * (1.0 - SEARCH)).all()
+
+
+def weakly_coupled(force):
+    """The pads where their own motion presses them little: one motion per residual traction."""
+    return pads(damping=0.6, force=force, tilt=0.1)
+
+
+FRICTION = {"friction": [0.3, 0.5, 0.7], "dof": "a.x", "harmonics": 7, "omega": (9.0, 24.0)}
+
+
+@pytest.fixture(scope="module")
+def bounded_peaks():
+    return ss.damper_curve(weakly_coupled(0.4), residual="bounds", **FRICTION)
+
+
+def test_peaks_along_a_parameter(bounded_peaks):
+    """What any residual traction makes of a peak lies between its bounds."""
+    curve = bounded_peaks
+    plain = ss.damper_curve(weakly_coupled(0.4), **FRICTION)
+    np.testing.assert_allclose(curve.amplitude, plain.amplitude, rtol=1e-9)
+    assert curve.counters["evaluations"] <= 6 * plain.counters["evaluations"]
+    assert (curve.upper[1:] > 1.005 * curve.lower[1:]).all()
+    assert not curve.guaranteed.any()
+    for residual in (-2.0, -0.7, -0.2, 0.2, 0.7, 2.0, "from_rest"):
+        other = ss.damper_curve(weakly_coupled(0.4), residual=residual, **FRICTION)
+        assert (other.amplitude <= curve.upper * (1.0 + SEARCH)).all()
+        assert (other.amplitude >= curve.lower * (1.0 - SEARCH)).all()
+    fine = ss.forced_response(
+        curve.model_at(0.7), np.linspace(21.0, 22.0, 41), 7, residual="bounds", observe=["a.x"]
+    )
+    least, highest = fine.peak_bounds("a.x")
+    assert curve.lower[2] == pytest.approx(least.amplitude, rel=1e-4)
+    assert curve.upper[2] == pytest.approx(highest.amplitude, rel=1e-4)
+
+
+def test_unique_peaks_have_no_width():
+    """Where all contacts slip at the peak, and where laws are monotone."""
+    curve = ss.damper_curve(weakly_coupled(2.0), residual="bounds", **FRICTION)
+    assert (curve.unique == "yes").all()
+    np.testing.assert_array_equal(curve.upper, curve.amplitude)
+    np.testing.assert_array_equal(curve.lower, curve.amplitude)
+    beam = {"slip_force": [20.0, 100.0], "dof": "tip", "harmonics": 5, "residual": "bounds"}
+    monotone = ss.damper_curve(snecma_beam(force=20.0), **beam)
+    assert monotone.guaranteed.all()
+    np.testing.assert_array_equal(monotone.upper, monotone.amplitude)
+
+
+def test_levels_scale_bounds():
+    """The level counts, however it is shared between the forces and the factor on them."""
+    at = FRICTION | {"residual": "bounds"}
+    del at["friction"]
+    one = ss.damper_curve(weakly_coupled(0.8), level=[0.25], **at)
+    other = ss.damper_curve(weakly_coupled(0.2), level=[1.0], **at)
+    np.testing.assert_allclose(one.upper, other.upper, rtol=1e-9)
+    np.testing.assert_allclose(one.lower, other.lower, rtol=1e-9)
+    assert one.upper > 1.005 * one.lower
+
+
+def test_bounded_peaks_are_saved_drawn_and_told(bounded_peaks, tmp_path):
+    bounded_peaks.save(tmp_path / "peaks.nc")
+    loaded = ss.load(tmp_path / "peaks.nc")
+    np.testing.assert_array_equal(loaded.lower, bounded_peaks.lower)
+    np.testing.assert_array_equal(loaded.unique, bounded_peaks.unique)
+    texts = [text.get_text() for text in loaded.plot().get_legend().get_texts()]
+    assert "all residual tractions" in texts
+    (told,) = [one for one in loaded.diagnostics if one.code == "bounds"]
+    assert told.data["points"] == (loaded.unique != "yes").sum()
+
+
+def test_peaks_without_bounds():
+    curve = ss.damper_curve(pads(), friction=[0.3], dof="a.x", harmonics=1, omega=(9.0, 24.0))
+    assert set(curve.unique) == {"not asked"}
+    with pytest.raises(ss.ModelError, match=r"^residual: its bounds were not computed"):
+        _ = curve.upper
+    with pytest.raises(ss.ModelError, match=r"^measure: 'max' has no bounds"):
+        ss.damper_curve(pads(), residual="bounds", measure="max", **FRICTION)

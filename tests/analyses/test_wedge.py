@@ -87,6 +87,60 @@ def test_peaks_of_two_blades_are_those_of_time_integration(name):
     assert amplitudes[highest] == pytest.approx(run.amplitude("left.x"), rel=5e-4)
 
 
+SETS = {
+    "as drawn": ({"damping": 100.0}, (97.0, 115.0)),
+    "light load": ({"angle": 54.0, "mass": 0.2, "friction": 0.3, "load": 120.0}, (97.0, 112.0)),
+    "stiff faces": (
+        {
+            "angle": 50.0,
+            "mass": 0.3,
+            "friction": 0.25,
+            "tangential_stiffness": 4e5,
+            "normal_stiffness": 5e5,
+            "load": 480.0,
+            "force": 250.0,
+        },
+        (97.0, 112.0),
+    ),
+    "one face separates": (
+        {
+            "angle": 48.0,
+            "mass": 0.4,
+            "friction": 0.35,
+            "load": 200.0,
+            "force": 200.0,
+            "phase": 2.6,
+        },
+        (97.0, 112.0),
+    ),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", SETS)
+def test_found_peaks_are_those_of_time_integration(name):
+    """The peak that the program finds, and the response there and on either side of it."""
+    changes, span = SETS[name]
+    model = pair(**changes)
+    curve = ss.forced_response(model, np.linspace(*span, 31), harmonics=47, stability=False)
+    peak = curve.peak("left.x")
+    assert not peak.at_edge
+    beside = peak.omega + np.array([-0.3, 0.0, 0.3])
+    grid = np.append(np.linspace(span[0], beside[0], 3)[:2], beside)
+    fine = ss.forced_response(model, grid, harmonics=63, stability=False)
+    opens = max(fine.open_fraction(side)[2:].max() for side in ("left", "right"))
+    assert (opens > 0.01) == (name == "one face separates")
+    run = [
+        ss.transient(model, omega=omega, periods=600, scheme="exact", tolerance=1e-7, keep=1)
+        for omega in beside
+    ]
+    assert {one.status for one in run} == {"settled"}
+    integrated = [one.amplitude("left.x") for one in run]
+    np.testing.assert_allclose(fine.amplitude("left.x")[2:], integrated, rtol=5e-5)
+    assert peak.amplitude == pytest.approx(max(integrated), rel=5e-4)
+    assert integrated[1] == max(integrated)
+
+
 @pytest.mark.parametrize(
     ("parameter", "step"),
     [("friction", 1e-4), ("tangential_stiffness", 30.0), ("normal_stiffness", 30.0)],
@@ -200,6 +254,29 @@ def test_mistuned_disk_has_a_damper_behind_every_blade():
     result = ss.forced_response(mistuned, [205.0], harmonics=3, stability=False)
     assert result.converged.all()
     assert np.ptp([result.amplitude(f"{blade}.x")[0] for blade in range(3)]) > 0.0
+
+
+@pytest.mark.slow
+def test_amplification_of_mistuned_disks_with_wedges():
+    """A study finds the highest blade of every pattern, as by its disk one by one."""
+    tuned, span = disk(sectors=6), (205.0, 235.0)
+    patterns = np.random.default_rng(4).normal(size=(2, 6))
+    options = {"harmonics": 1, "omega": span}
+    study = ss.mistuning_study(tuned, 0.02, patterns=patterns, dofs=["x"], **options)
+
+    def highest(pattern):
+        grid = np.linspace(*span, 61)
+        frf = ss.forced_response(
+            tuned.mistuned(0.02 * np.array(pattern)), grid, harmonics=1, stability=False
+        )
+        assert frf.converged.all()
+        assert max(frf.slip_fraction(one).max() for one in ("0.left", "3.right")) > 0.2
+        return max(frf.peak(f"{blade}.x").amplitude for blade in range(6))
+
+    reference = highest(np.zeros(6))
+    own = [highest(pattern) / reference for pattern in patterns]
+    np.testing.assert_allclose(study.amplification("x").ravel(), own, rtol=1e-3)
+    assert max(own) > 1.03
 
 
 def test_free_flight_is_named():

@@ -139,7 +139,7 @@ impl<'a> Search<'a> {
     }
 
     /// Searches at a point, from the extremes of the one before.
-    fn point(
+    pub(super) fn point(
         &mut self,
         point: &Point,
         before: Option<&Found>,
@@ -212,7 +212,7 @@ impl Found {
         Self { nominal: pool.motions.first().cloned(), extremes: pool.extremes(), ascents }
     }
 
-    fn bounds(&self) -> Option<AmplitudeBounds> {
+    pub(super) fn bounds(&self) -> Option<AmplitudeBounds> {
         let nominal = self.nominal.as_ref()?;
         let others = self.extremes.iter().map(|motion| motion.amplitude.as_slice());
         Some(between(&nominal.amplitude, nominal.pushed, others))

@@ -2,6 +2,7 @@
 
 use super::global_peak::{PeakQuery, PeakSearch, Reached, OF_CURVE};
 use super::member::Member;
+use super::peak_bounds::{bound_peak, PeakBounds};
 use crate::balance::{ForcedBalance, Linearised, PointStatus, Progress, Resolution, Settings};
 use crate::fourier::Measure;
 use crate::model::{Model, Variation};
@@ -47,6 +48,8 @@ pub struct Peak {
     pub error_estimate: f64,
     /// Whether it lies at an end of the range.
     pub at_edge: bool,
+    /// Bounds over the residual tractions, if they were asked for.
+    pub bounds: Option<PeakBounds>,
 }
 
 impl Peak {
@@ -61,6 +64,7 @@ impl Peak {
             harmonics: 0,
             error_estimate: nan,
             at_edge: false,
+            bounds: None,
         }
     }
 }
@@ -90,9 +94,37 @@ pub fn peak_curve(
     target: &Target,
     progress: &Progress<'_>,
 ) -> Result<Curve, Error> {
+    followed(model, settings, variation, (values, None), target, progress)
+}
+
+/// [`peak_curve`] with bounds over the residual tractions; `proved` tells that theory leaves one
+/// vibration alone.
+///
+/// # Errors
+/// As for the curve; a mean displacement that rigid-body motion leaves undefined.
+pub fn bounded_peak_curve(
+    model: &Model,
+    settings: Settings,
+    variation: &Variation,
+    (values, proved): (&[f64], bool),
+    target: &Target,
+    progress: &Progress<'_>,
+) -> Result<Curve, Error> {
+    followed(model, settings, variation, (values, Some(proved)), target, progress)
+}
+
+fn followed(
+    model: &Model,
+    settings: Settings,
+    variation: &Variation,
+    (values, bounds): (&[f64], Option<bool>),
+    target: &Target,
+    progress: &Progress<'_>,
+) -> Result<Curve, Error> {
     let start = Instant::now();
     let quest = target.quest();
     let mut follower = Follower::new(model, settings, variation, &quest, progress)?;
+    follower.bounds = bounds;
     let mut peaks = Vec::with_capacity(values.len());
     for (index, &value) in values.iter().enumerate() {
         peaks.push(follower.peak(value, index as f64 / values.len() as f64)?);
@@ -107,6 +139,8 @@ pub(super) struct Follower<'a> {
     climb: PeakSearch<'a>,
     /// What the last peak has asked for.
     resolution: Option<Resolution>,
+    /// Whether bounds over the residual tractions are asked for, and theory says that they coincide.
+    bounds: Option<bool>,
     /// Values without a solved peak.
     pub(super) missing: Vec<Peak>,
     pub(super) interrupted: bool,
@@ -122,7 +156,8 @@ impl<'a> Follower<'a> {
     ) -> Result<Self, Error> {
         let climb = PeakSearch::new(model, settings, quest, OF_CURVE, progress)?;
         let missing = Vec::new();
-        Ok(Self { model, variation, climb, resolution: None, missing, interrupted: false })
+        let (resolution, bounds) = (None, None);
+        Ok(Self { model, variation, climb, resolution, bounds, missing, interrupted: false })
     }
 
     pub(super) fn finish(self, peaks: Vec<Peak>, start: Instant) -> Curve {
@@ -160,6 +195,7 @@ impl<'a> Follower<'a> {
             return Ok(Peak::missing(value, summit.status));
         }
         self.resolution = Some(wanted);
+        let bounds = self.bounds_of(&member, (summit.amplitude, sample), resolution)?;
         Ok(Peak {
             value,
             omega: summit.omega,
@@ -169,7 +205,28 @@ impl<'a> Follower<'a> {
             harmonics: summit.harmonics,
             error_estimate: member.scale * summit.error_estimate,
             at_edge: summit.at_edge,
+            bounds: bounds.map(|bounds| bounds.scaled(member.scale)),
         })
+    }
+
+    /// The bounds of a peak, if they are asked for.
+    fn bounds_of(
+        &mut self,
+        member: &Member,
+        (amplitude, sample): (f64, usize),
+        resolution: Resolution,
+    ) -> Result<Option<PeakBounds>, Error> {
+        let Some(false) = self.bounds else {
+            return Ok(self.bounds.map(|proved| PeakBounds::unique(amplitude, proved)));
+        };
+        let climb = &mut self.climb;
+        let settings = Settings { residual: member.residual, ..climb.settings.at(resolution) };
+        let (dof, samples) = (climb.quest.groups[0][0], (&climb.seeds[..], sample));
+        let (bounds, points, profile) =
+            bound_peak(&member.model, settings, dof, samples, climb.progress)?;
+        climb.points += points;
+        climb.memory.profile.add(&profile);
+        Ok(Some(bounds))
     }
 
     /// Derivative of the peak in the parameter: the frequency at which it is highest moves, but

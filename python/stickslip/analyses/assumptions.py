@@ -13,6 +13,7 @@ from stickslip.checks import listed
 from stickslip.model import Coulomb, Model, StructuralDamper, natural_frequencies
 from stickslip.model.state import State
 from stickslip.results.arrays import STABILITY, UNIQUE, Arrays, Float, amplitude_of
+from stickslip.results.damper_curve import DamperArrays
 from stickslip.results.diagnostic import Diagnostic, missed_tolerances, present
 from stickslip.results.status import Status
 from stickslip.settings.balance import ForcedSettings
@@ -50,7 +51,7 @@ def balance_assumptions(
                 not single and _harmonics(settings, arrays, solution.half_wave),
                 _static_traction(model, settings, arrays),
                 _node_traction(model, settings, arrays),
-                settings.bounds and _bounds(arrays),
+                settings.bounds and bounds_of(arrays),
                 _start_of_march(model),
                 bool(model.contacts) and _samples(model, settings, arrays),
                 base in TEXTS and told(base, base=model.problem.modal_base),
@@ -86,7 +87,7 @@ def orbit_assumptions(
                 told("half-period/half" if solution.half_wave else "half-period"),
                 told("harmonics/orbits", most=settings.harmonics),
                 _static_traction(model, settings, arrays),
-                settings.bounds and _bounds(arrays),
+                settings.bounds and bounds_of(arrays),
                 settings.bounds and _lost_bounds(arrays),
                 _node_traction(model, settings, arrays),
                 _start_of_march(model),
@@ -186,7 +187,7 @@ def _static_traction(
     )
 
 
-def _bounds(arrays: Arrays) -> Diagnostic | None:
+def bounds_of(arrays: Arrays | DamperArrays, variant: str = "bounds") -> Diagnostic | None:
     """Say what bounds over the residual tractions are worth."""
     none = UNIQUE.index("not asked"), UNIQUE.index("not found")
     known = ~np.isin(arrays.unique, none)
@@ -195,7 +196,7 @@ def _bounds(arrays: Arrays) -> Diagnostic | None:
     if arrays.guaranteed[known].all():
         return told("bounds/unique")
     wide = int((arrays.unique[known] != UNIQUE.index("yes")).sum())
-    return told("bounds", points=wide, _known=int(known.sum()))
+    return told(variant, points=wide, _known=int(known.sum()))
 
 
 def _lost_bounds(arrays: Arrays) -> Diagnostic | None:

@@ -8,6 +8,7 @@ import numpy as np
 
 from stickslip import _core
 from stickslip.analyses.arguments import require_forced, require_held
+from stickslip.analyses.assumptions import uniqueness
 from stickslip.analyses.peak_assumptions import damper_assumptions
 from stickslip.analyses.run import Progress, Run, refusals
 from stickslip.analyses.variation import (
@@ -39,6 +40,10 @@ def damper_curve(model: Model, *, settings: DamperKeys, progress: Progress = Non
     The peak itself is followed: at every value the highest point over frequency is found from
     some twenty solutions with exact slopes, and the next value starts from them.
 
+    With ``residual="bounds"`` the tractions that the past may have left in contacts which stick are
+    varied over all that Coulomb allows: `lower` and `upper` are the least and the largest peak
+    found, `unique` says whether they differ and `guaranteed` whether theory excludes others.
+
     Returns
     -------
     DamperCurve
@@ -49,6 +54,13 @@ def damper_curve(model: Model, *, settings: DamperKeys, progress: Progress = Non
     Guillen (1999), Figs 2.6, 2.10, 2.11, 4.3 to 4.8, there from full sweeps. Griffin (1980): the
     optimal slip force of a blade damper.
     """
+    bounded = settings.bounded
+    if bounded and settings.measure != "half_range":
+        raise ModelError(
+            f"measure: {settings.measure!r} has no bounds over residual tractions, which move the "
+            'mean as well; leave it at "half_range"'
+        )
+    settings = settings.nominal(model)
     parameter = settings.varied
     values = getattr(settings, parameter)
     if parameter == "stiffness" and settings.common == "factor" and np.isinf(values).any():
@@ -56,7 +68,7 @@ def damper_curve(model: Model, *, settings: DamperKeys, progress: Progress = Non
             "stiffness: an infinite factor has no meaning; give finite ones, or values"
         )
     variation = variation_of(model, parameter, settings)
-    kept = settings_for(model, variation, values, settings)
+    kept = settings_for(model, variation, values, settings, bounds=bounded)
     start = _rigid_from(model, variation)
     rigid = start if _is_rigid(values, start).any() else None
     with Run("damper curve", progress, model) as run:
@@ -66,7 +78,12 @@ def damper_curve(model: Model, *, settings: DamperKeys, progress: Progress = Non
 
 
 def settings_for(
-    model: Model, variation: Variation, values: Float, settings: PeakKeys
+    model: Model,
+    variation: Variation,
+    values: Float,
+    settings: PeakKeys,
+    *,
+    bounds: bool = False,
 ) -> DamperSettings:
     """Return the checked settings of a curve over some values."""
     start = _rigid_from(model, variation)
@@ -77,7 +94,11 @@ def settings_for(
     if span is None:
         span = resonance_range(model, variation, settings.mode, finite)
     kept = DamperSettings.of(
-        **settings.part(PeakSettings), dof=settings.dof, variation=variation, span=span
+        **settings.part(PeakSettings),
+        dof=settings.dof,
+        variation=variation,
+        span=span,
+        bounds=bounds,
     )
     model.structure.index(kept.dof)
     require_forced(model, kept)
@@ -123,6 +144,7 @@ def _peaks(
             solved,
             settings,
             progress,
+            (uniqueness(model) is None) if settings.bounds else None,
         )
     arrays = DamperArrays.of(peaks)
     return (arrays if rigid is None else _with_limit(arrays, values, rigid)), peaks
@@ -150,7 +172,7 @@ def _with_limit(arrays: DamperArrays, values: Float, rigid: float) -> DamperArra
         two = int(second[place])
         one = two - 1
         share = 2.0 * rigid / values[place]
-        for name in ("omega", "amplitude"):
+        for name in ("omega", "amplitude", "lower", "upper"):
             numbers = getattr(arrays, name)
             last[name][place] = numbers[two] + (1.0 - share) * (numbers[two] - numbers[one])
         change = abs(arrays.amplitude[two] - arrays.amplitude[one])

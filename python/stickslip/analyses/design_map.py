@@ -3,26 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from concurrent.futures import ThreadPoolExecutor
-from functools import partial
 from os import cpu_count
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from stickslip import _core
 from stickslip.analyses.forced_response import forced_response
+from stickslip.analyses.run import refusals
 from stickslip.checks import brief, members, real_matrix, real_number, set_fields, text
 from stickslip.errors import ModelError
 from stickslip.model import Model, Structure
 from stickslip.results.design_map import DesignMap, SpeedResponse
+from stickslip.settings.peaks import PeakSettings
 from stickslip.units import physical_number
-
-_COARSE = 3
-"""Harmonics with which resonances are located."""
-_NEAR = 0.8
-"""Share of the highest of the coarse maxima from which on a rival is looked at too."""
-_LOCAL = 5
-"""Frequencies around a maximum."""
 
 
 def design_map(
@@ -40,8 +34,8 @@ def design_map(
 
     Resonances of a model are located on a coarse grid with three harmonics; the highest ones are
     then solved on ever narrower grids with twice the harmonics each, until the peak stays the same
-    within the tolerance. Unlike with `damper_curve` whatever `build` makes may vary: mass, angle,
-    speed, geometry.
+    within the tolerance, which is above its error estimate. Unlike with `damper_curve` whatever
+    `build` makes may vary: mass, angle, speed, geometry.
 
     Parameters
     ----------
@@ -56,7 +50,8 @@ def design_map(
     points : int, optional
         Frequencies of the coarse grid. A resonance much narrower than their distance may be missed.
     tolerance : float, optional
-        Change of the peak, relative to it, with twice the harmonics that counts as none.
+        Change of the peak, relative to it, with twice the harmonics that counts as none, and the
+        error estimate that is small enough.
     max_harmonics : int, optional
         Harmonics at which a peak is given up: it counts as not found.
     threads : int, optional
@@ -85,11 +80,13 @@ def design_map(
         model = build(**dict(zip(names, cell, strict=True)))
         if not isinstance(model, Model):
             raise ModelError(f"build: {brief(model)} is no Model; return one")
-        model.structure.index(dof)
         models.append(model)
-    find = partial(_peak, dof=dof, grid=span, tolerance=tolerance, max_harmonics=max_harmonics)
-    with ThreadPoolExecutor(threads or cpu_count()) as pool:
-        found = np.array(list(pool.map(find, models)))
+    settings = PeakSettings.of(tolerance=tolerance, max_harmonics=max_harmonics)
+    problems = [
+        (model.problem, settings.suited(model), model.structure.index(dof)) for model in models
+    ]
+    with refusals(models[0]):
+        found = np.array(_core.peak_map(problems, span, threads or cpu_count() or 1))
     shape = tuple(map(len, values))
     columns = [column.reshape(shape) for column in found.T]
     own = DesignMap(names, values, dof, columns[0], columns[1], columns[2].astype(np.int64))
@@ -107,63 +104,6 @@ def _two(parameters: object) -> tuple[tuple[str, str], tuple[NDArray[np.float64]
         np.array([real_number(one, name) for one in members(values, name, "[0.05, 0.1]")])
         for name, values in parameters.items()
     )
-
-
-def _peak(
-    model: Model, *, dof: str, grid: NDArray[np.float64], tolerance: float, max_harmonics: int
-) -> tuple[float, float, float]:
-    """Return amplitude, frequency and harmonics of the highest peak; nan where there is none."""
-    coarse = _amplitudes(model, dof, grid, _COARSE)
-    if not np.isfinite(coarse).any():
-        return np.nan, np.nan, 0
-    filled = np.nan_to_num(coarse, nan=-1.0)
-    ahead, behind = np.append(filled[1:], -1.0), np.append(-1.0, filled[:-1])
-    tops = np.flatnonzero((filled >= ahead) & (filled >= behind) & (filled >= _NEAR * filled.max()))
-    best: tuple[float, float, float] = (np.nan, np.nan, 0)
-    for top in tops:
-        one = _refined(model, dof, grid, int(top), tolerance, max_harmonics)
-        if not best[0] >= one[0]:
-            best = one
-    return best
-
-
-def _refined(
-    model: Model,
-    dof: str,
-    grid: NDArray[np.float64],
-    top: int,
-    tolerance: float,
-    max_harmonics: int,
-) -> tuple[float, float, float]:
-    """Return a peak near a point of the coarse grid."""
-    step, centre = grid[1] - grid[0], grid[top]
-    before, harmonics = np.nan, _COARSE
-    while 2 * harmonics + 1 <= max_harmonics:
-        harmonics = 2 * harmonics + 1
-        near = np.linspace(
-            max(centre - 2.0 * step, grid[0]), min(centre + 2.0 * step, grid[-1]), _LOCAL
-        )
-        amplitudes = _amplitudes(model, dof, near, harmonics)
-        if not np.isfinite(amplitudes).any():
-            break
-        omega, amplitude = _vertex(near, amplitudes)
-        if abs(amplitude - before) <= tolerance * amplitude:
-            return amplitude, omega, harmonics
-        # A peak that has wandered off is followed before the grid narrows.
-        inside = near[1] < omega < near[-2]
-        step, centre, before = (0.5 if inside else 1.0) * step, omega, amplitude
-    return np.nan, np.nan, harmonics
-
-
-def _vertex(omega: NDArray[np.float64], amplitude: NDArray[np.float64]) -> tuple[float, float]:
-    """Return the top of the parabola through the highest point and its neighbours."""
-    top = int(np.nanargmax(amplitude))
-    around = slice(top - 1, top + 2)
-    if not 0 < top < omega.size - 1 or not np.isfinite(amplitude[around]).all():
-        return float(omega[top]), float(amplitude[top])
-    curve = np.polynomial.Polynomial.fit(omega[around], amplitude[around], 2)
-    (at,) = curve.deriv().roots()
-    return float(at), float(curve(at))
 
 
 def _amplitudes(

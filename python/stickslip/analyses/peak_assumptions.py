@@ -4,7 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from stickslip.analyses.assumptions import LARGE_ERROR, direct_assumption, uniqueness
+from stickslip.analyses.assumptions import (
+    LARGE_ERROR,
+    bounds_of,
+    direct_assumption,
+    uniqueness,
+)
 from stickslip.analyses.texts import told
 from stickslip.checks import listed
 from stickslip.model import Model
@@ -29,6 +34,7 @@ def damper_assumptions(
             rigid is not None and told("rigid-limit", stiffness=rigid, _twice=2.0 * rigid),
             *_peaks(settings, arrays, "values"),
             _truncation_of_peaks(settings, arrays),
+            settings.bounds and bounds_of(arrays, "bounds/peaks"),
             uniqueness(model),
             direct_assumption(model),
         )

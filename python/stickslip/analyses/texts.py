@@ -154,6 +154,8 @@ TEXTS = {
     "bounds/modes": "Frequency or damping depend on residual tractions at {points} of {_known} "
     "amplitudes. The bounds are inner ones, of {corners} places in what Coulomb allows: others "
     "could lie outside.",
+    "bounds/peaks": "The peak depends on residual tractions at {points} of {_known} values. The "
+    "bounds are inner ones: every amplitude in them is attained, and others could lie outside.",
     "bounds-not-found": "At {points} points an orbit with the least or the largest amplitude was "
     "not found; forced_response has bounds there.",
     "bounds-not-found/modes": "In {places} of the {corners} places the mode was not found at all "

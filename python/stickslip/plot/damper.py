@@ -41,6 +41,17 @@ def damper(
         x, y = view.x, view.y
         looks: Looks = {"color": colour, "lw": 1.6, "gid": style.RESPONSE}
         ax.plot(x, y, marker="." if x.size == 1 else "", label=name, **looks)
+        if one.bounded:
+            lower, upper = (view.factor * bound[view.shown] for bound in (one.lower, one.upper))
+            ax.fill_between(
+                view.x,
+                lower,
+                upper,
+                color=colour,
+                alpha=0.15,
+                lw=0.7,
+                label="all residual tractions",
+            )
         if beside is not None:
             shown = omega.factor * one.omega[view.shown]
             beside.plot(x, shown, color=colour, lw=1.0, ls="--", alpha=0.8)

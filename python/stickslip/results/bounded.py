@@ -51,7 +51,10 @@ class Bounded(ContactMotion):
         if np.array_equal(lower, upper, equal_nan=True):
             peak = self.peak(dof)
             return peak, peak
-        return highest_of(self, dof, lower), highest_of(self, dof, upper)
+        least, highest = highest_of(self, dof, lower), highest_of(self, dof, upper)
+        # A parabola across a jump of the bound leads above it.
+        amplitude = min(least.amplitude, self.peak(dof).amplitude)
+        return least._replace(amplitude=amplitude), highest
 
     @cached_property
     def unique(self) -> NDArray[np.str_]:

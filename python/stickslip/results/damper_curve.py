@@ -7,11 +7,12 @@ from functools import cached_property
 from typing import ClassVar, NamedTuple, Self
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
 from stickslip.model import Model
-from stickslip.results.arrays import Bool, Code, Float, Int, constant
+from stickslip.results.arrays import UNIQUE, Bool, Code, Float, Int, constant
 from stickslip.results.dataset import Stored
 from stickslip.results.fields import Columns, Shown, column
 from stickslip.results.result import ColumnResult
@@ -28,6 +29,18 @@ class LeastPeak(NamedTuple):
     """Angular frequency of the peak [rad/s]."""
     amplitude: float
     """Its amplitude [m]."""
+
+
+def _unbounded(dataset: Stored) -> Float:
+    return np.full(dataset.sizes["value"], np.nan)
+
+
+def _not_asked(dataset: Stored) -> Code:
+    return np.full(dataset.sizes["value"], UNIQUE.index("not asked"), np.uint8)
+
+
+def _nowhere(dataset: Stored) -> Bool:
+    return np.zeros(dataset.sizes["value"], np.bool_)
 
 
 class DamperArrays(Columns):
@@ -47,6 +60,22 @@ class DamperArrays(Columns):
     )
     at_edge: Bool = column("value", "1", "whether the peak lies at an end of the range")
     status: Code = column("value", "1", "how the value ended", codes=Status)
+    lower: Float = column(
+        "value", "m", "least peak over the residual tractions", least=0.0, absent=_unbounded
+    )
+    upper: Float = column(
+        "value", "m", "largest peak over the residual tractions", least=0.0, absent=_unbounded
+    )
+    unique: Code = column(
+        "value",
+        "1",
+        "whether the peak is the same for all residual tractions",
+        codes=UNIQUE,
+        absent=_not_asked,
+    )
+    guaranteed: Bool = column(
+        "value", "1", "whether theory excludes peaks outside of the bounds", absent=_nowhere
+    )
 
     @cached_property
     def solved(self) -> Bool:
@@ -89,6 +118,56 @@ class DamperCurve(ColumnResult):
     def status(self) -> tuple[Status, ...]:
         """How each value ended; ``status[i].advice`` says what to do about it."""
         return tuple(map(Status.from_code, self.arrays.status.tolist()))
+
+    @property
+    def bounded(self) -> bool:
+        """Whether bounds over the residual tractions are known at some value."""
+        return bool((self.arrays.unique != UNIQUE.index("not asked")).any())
+
+    @property
+    def lower(self) -> Float:
+        """The least peak over all residual tractions, shape (n,) [m].
+
+        The highest point over frequency of the least amplitudes, half the range over a period. A
+        residual traction that stays the same over the sweep has a peak not below it. See `unique`
+        and `guaranteed`.
+
+        Raises ModelError if the bounds were not asked for.
+        """
+        return self._bound(self.arrays.lower)
+
+    @property
+    def upper(self) -> Float:
+        """The largest peak over all residual tractions, shape (n,) [m].
+
+        See `lower`.
+        """
+        return self._bound(self.arrays.upper)
+
+    @cached_property
+    def unique(self) -> NDArray[np.str_]:
+        """Whether each peak is the same for all residual tractions.
+
+        "yes", "no" (it depends on them), "shakedown" (it does, and the motion at the peak has
+        itself pushed a contact in one sense until it slips no more) or "not asked".
+        """
+        return constant(np.array(UNIQUE)[self.arrays.unique])
+
+    @property
+    def guaranteed(self) -> Bool:
+        """Whether theory excludes peaks outside of the bounds, value by value.
+
+        It does where there is one vibration alone: monotone laws on a damped structure. Elsewhere
+        the bounds are inner ones: the amplitudes between were found, others could lie outside.
+        """
+        return self.arrays.guaranteed
+
+    def _bound(self, values: Float) -> Float:
+        if not self.bounded:
+            raise ModelError(
+                'residual: its bounds were not computed; give residual="bounds" to damper_curve'
+            )
+        return values
 
     @property
     def objective(self) -> Float:

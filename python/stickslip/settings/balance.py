@@ -106,8 +106,8 @@ class BoundsKey(SteadySettings):
         description="Force [N] that a contact holds at mid-range of its displacement if it never "
         'slips; the steady state alone does not determine it. "centred" is none, "from_rest" what '
         'is left of loads raised slowly from nothing, "bounds" everything that Coulomb allows: '
-        "`ForcedResponse.lower` and `upper`, beside the default's curve. Default: centred, and "
-        "from rest as soon as a static load acts, or where contacts alone hold a body. See "
+        "`lower` and `upper` of the result, beside the default's curve. Default: centred, and from "
+        "rest as soon as a static load acts, or where contacts alone hold a body. See "
         "`ForcedResponse.residual_bounds`.",
         examples=["from_rest", "10 N", "bounds"],
     )

@@ -11,11 +11,12 @@ from pydantic import BeforeValidator, Field, PlainValidator, Strict, ValidationI
 
 from stickslip.checks import brief, whole_number
 from stickslip.errors import EntryError
-from stickslip.settings.balance import HarmonicSettings
+from stickslip.settings.balance import BoundsKey, HarmonicSettings
 from stickslip.settings.entries import (
     ONE_OF,
     Count,
     Dof,
+    Flag,
     Index,
     ListOr,
     Many,
@@ -130,7 +131,7 @@ class PeakKeys(_FollowedPeak, ContactKeys):
     )
 
 
-class DamperKeys(ParameterKeys, PeakKeys):
+class DamperKeys(BoundsKey, ParameterKeys, PeakKeys):
     """Along which parameter a peak is followed, and how; give exactly one of the parameters."""
 
 
@@ -156,6 +157,9 @@ class OptimumKeys(PeakKeys):
 class DamperSettings(_FollowedPeak):
     """How a damper curve was computed."""
 
+    bounds: Flag = Field(
+        default=False, description="Whether the residual tractions were varied, for bounds."
+    )
     variation: Variation = Field(description="What is varied.")
     span: _PeakRange = Field(
         description="Range of frequencies in which the peak is the highest point [rad/s]."

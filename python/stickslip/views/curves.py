@@ -19,7 +19,7 @@ from stickslip.results.forced_response import ForcedResponse
 from stickslip.results.stability import stability_counts
 from stickslip.views.kinds import LENGTHS, Dofs, Rows, View
 from stickslip.views.picture import Panel, Panels
-from stickslip.views.tables import Row, Table, tabulated
+from stickslip.views.tables import Row, Table, bound_rows, tabulated
 
 if TYPE_CHECKING:
     from stickslip.study.tables import OutputTable
@@ -88,7 +88,7 @@ class CurveView(View[ForcedResponse]):
             march = result.settings.march
             samples = _kept(result, result.samples) if march == "auto" else f"{march}"
             rows.append(("samples", f"{samples} per period"))
-        rows += _bound_rows(result)
+        rows += bound_rows(result)
         rows += _state_rows(result)
         return rows + (_orbit_rows(result) if isinstance(result, ExactResponse) else [])
 
@@ -141,16 +141,6 @@ def _details(result: ForcedResponse, dofs: Dofs, output: OutputTable) -> Iterato
             yield partial(plots.hysteresis, result, contact, at, length_unit=length)
     if isinstance(result, ExactResponse):
         yield partial(plots.multipliers, result, omega_unit=omega)
-
-
-def _bound_rows(result: ForcedResponse) -> list[Row]:
-    if not result.bounded:
-        return []
-    names = ("yes", "no", "shakedown", "not found")
-    counts = {name: int((result.unique == name).sum()) for name in names}
-    said = ", ".join(f"{count} {name}" for name, count in counts.items() if count)
-    kind = "guaranteed" if result.guaranteed[result.unique != "not asked"].all() else "inner"
-    return [("unique", f"{said} ({kind} bounds over residual tractions)")]
 
 
 def _of_sectors(disk: MistunedDisk, dofs: Dofs) -> list[str]:

@@ -11,7 +11,7 @@ from stickslip.results.damper_curve import DamperCurve
 from stickslip.results.optimal_damper import OptimalDamper
 from stickslip.views.kinds import Dofs, Rows, View
 from stickslip.views.picture import Panels
-from stickslip.views.tables import Row, assumed, counted
+from stickslip.views.tables import Row, assumed, bound_rows, counted
 
 if TYPE_CHECKING:
     from stickslip.study.tables import OutputTable
@@ -52,6 +52,7 @@ class DamperView(View[DamperCurve]):
             ("peak of", f"{settings.dof} ({settings.measure}), {low:.6g} to {high:.6g} rad/s"),
             ("harmonics", f"{settings.harmonics}"),
             ("solutions", f"{result.counters['points']}"),
+            *bound_rows(result),
         ]
 
     def failures(self, result: DamperCurve) -> list[str]:

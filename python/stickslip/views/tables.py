@@ -11,11 +11,13 @@ from rich.table import Table
 # The command says its version without loading these.
 if TYPE_CHECKING:
     from stickslip.model import Model
+    from stickslip.results.damper_curve import DamperCurve
+    from stickslip.results.forced_response import ForcedResponse
     from stickslip.results.result import Result
     from stickslip.results.status import Status
 
 
-__all__ = ["Row", "Table", "assumed", "counted", "listed", "model_rows", "tabulated"]
+__all__ = ["Row", "Table", "assumed", "bound_rows", "counted", "listed", "model_rows", "tabulated"]
 
 Row: TypeAlias = tuple[str, str]
 """A fact: what it is of, and what it is."""
@@ -87,3 +89,14 @@ def counted(states: Iterable[Status], noun: str) -> list[str]:
 def listed(names: Sequence[str], most: int = 8) -> str:
     """Return the first names, and dots if that is not all."""
     return ", ".join(names[:most]) + (", ..." if len(names) > most else "")
+
+
+def bound_rows(result: ForcedResponse | DamperCurve) -> list[Row]:
+    """Say how far the past may have left residual tractions that change the result."""
+    if not result.bounded:
+        return []
+    names = ("yes", "no", "shakedown", "not found")
+    counts = {name: int((result.unique == name).sum()) for name in names}
+    said = ", ".join(f"{count} {name}" for name, count in counts.items() if count)
+    kind = "guaranteed" if result.guaranteed[result.unique != "not asked"].all() else "inner"
+    return [("unique", f"{said} ({kind} bounds over residual tractions)")]

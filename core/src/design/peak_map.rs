@@ -1,0 +1,213 @@
+//! Peaks of a map over two parameters of a design, each to some accuracy.
+//!
+//! Resonances are located on an even grid with few harmonics. The highest ones are then solved on ever
+//! narrower grids with twice the harmonics each, until the peak stays the same; every point starts from
+//! the nearest one that is known, of fewer harmonics too. This follows one branch: jumps are not looked
+//! for, as in the search for a single peak.
+
+use crate::balance::{sweep, ForcedBalance, HarmonicChoice, Point, Progress, Settings};
+use crate::fourier::{amplitude, Harmonics, Measure, SampleTable};
+use crate::model::Model;
+use crate::Error;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{channel, RecvTimeoutError};
+use std::sync::Arc;
+use std::time::Duration;
+
+/// Harmonics with which resonances are located.
+const COARSE: usize = 3;
+/// Share of the highest of the coarse maxima from which on a rival is looked at too.
+const NEAR: f64 = 0.8;
+/// Frequencies around a maximum, at first and then.
+const LOCAL: [usize; 2] = [5, 3];
+/// Time between two questions whether to go on.
+const PATIENCE: Duration = Duration::from_millis(50);
+
+/// A model of the map, how its balance is solved, and the DOF whose peak is sought.
+pub type Cell = (Arc<Model>, Settings, usize);
+
+/// The peak of a cell.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CellPeak {
+    /// Frequency; not-a-number if the peak was not found, as below [rad/s].
+    pub omega: f64,
+    /// Half range \[m\].
+    pub amplitude: f64,
+    /// Highest harmonic kept.
+    pub harmonics: usize,
+}
+
+impl CellPeak {
+    const fn missing(harmonics: usize) -> Self {
+        Self { omega: f64::NAN, amplitude: f64::NAN, harmonics }
+    }
+}
+
+/// Finds the peaks of all cells over a grid of frequencies, in parallel threads, to the tolerance of
+/// their settings.
+///
+/// # Errors
+/// No thread, or as for a solution.
+pub fn peak_map(
+    cells: &[Cell],
+    grid: &[f64],
+    threads: usize,
+    progress: &Progress<'_>,
+) -> Result<Vec<CellPeak>, Error> {
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .map_err(|error| Error::shape("threads", "as many as the system grants", error))?;
+    let stop = AtomicBool::new(false);
+    let (sender, receiver) = channel();
+    let mut found: Vec<Result<CellPeak, Error>> = vec![Ok(CellPeak::missing(0)); cells.len()];
+    pool.in_place_scope_fifo(|scope| {
+        for (index, cell) in cells.iter().enumerate() {
+            let (sender, stop) = (sender.clone(), &stop);
+            scope.spawn_fifo(move |_| {
+                let proceed = |_| !stop.load(Ordering::Relaxed);
+                let search = Search { cell, grid, progress: &proceed };
+                // Nobody listens any more once the map has ended.
+                let _ = sender.send((index, search.peak()));
+            });
+        }
+        drop(sender);
+        let mut done = 0;
+        loop {
+            match receiver.recv_timeout(PATIENCE) {
+                Ok((index, peak)) => {
+                    found[index] = peak;
+                    done += 1;
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => break,
+            }
+            if !progress(f64::from(done) / cells.len() as f64) {
+                stop.store(true, Ordering::Relaxed);
+            }
+        }
+    });
+    found.into_iter().collect()
+}
+
+/// The search for the peak of a cell.
+struct Search<'a> {
+    cell: &'a Cell,
+    grid: &'a [f64],
+    progress: &'a Progress<'a>,
+}
+
+impl Search<'_> {
+    fn peak(&self) -> Result<CellPeak, Error> {
+        let coarse = sweep(self.balance(COARSE)?, self.grid)?.points;
+        let highest = coarse.iter().map(|point| height(point)).fold(0.0, f64::max);
+        self.highest(&coarse, NEAR * highest)
+    }
+
+    /// The highest peak near the maxima of the even grid that reach so high.
+    fn highest(&self, points: &[Arc<Point>], least: f64) -> Result<CellPeak, Error> {
+        let heights: Vec<f64> = points.iter().map(|point| height(point)).collect();
+        let at = |at: Option<usize>| at.and_then(|at| heights.get(at)).map_or(0.0, |h| h.max(0.0));
+        let mut best = CellPeak::missing(COARSE);
+        for (top, (point, &own)) in points.iter().zip(&heights).enumerate() {
+            let is_top = own >= at(top.checked_sub(1)) && own >= at(Some(top + 1));
+            if is_top && own >= least && (self.progress)(0.0) {
+                let peak = self.refined(points, point.omega)?;
+                if best.amplitude.is_nan() || peak.amplitude > best.amplitude {
+                    best = peak;
+                }
+            }
+        }
+        Ok(best)
+    }
+
+    /// The peak near a frequency.
+    fn refined(&self, coarse: &[Arc<Point>], mut centre: f64) -> Result<CellPeak, Error> {
+        let (low, high) = (self.grid[0], self.grid[self.grid.len() - 1]);
+        let Settings { tolerance, max_harmonics, .. } = self.cell.1;
+        let (mut step, mut before) = (2.0 * (self.grid[1] - low), f64::NAN);
+        let (mut harmonics, mut known) = (COARSE, coarse.to_vec());
+        while 2 * harmonics < max_harmonics {
+            harmonics = 2 * harmonics + 1;
+            let mut balance = self.balance(harmonics)?;
+            let (from, to) = ((centre - step).max(low), (centre + step).min(high));
+            let last = LOCAL[usize::from(!before.is_nan())] - 1;
+            let near: Vec<f64> =
+                (0..=last).map(|n| from + (to - from) * n as f64 / last as f64).collect();
+            let mut points: Vec<Arc<Point>> = Vec::with_capacity(near.len());
+            for &omega in &near {
+                let distance = |point: &&Arc<Point>| (point.omega - omega).abs();
+                let solved = points.iter().chain(&known).filter(|point| point.is_solved());
+                let start = solved.min_by(|a, b| distance(a).total_cmp(&distance(b)));
+                let start = start.and_then(|point| point.unknowns());
+                points.push(Arc::new(balance.solve(omega, start)?));
+            }
+            let heights: Vec<f64> = points.iter().map(|point| height(point)).collect();
+            if heights.iter().all(|height| height.is_nan()) {
+                break;
+            }
+            let (omega, amplitude) = vertex(&near, &heights);
+            let solved = points.iter().filter(|point| point.is_solved());
+            let error = solved.map(|point| point.error_estimate[0]).fold(0.0, f64::max);
+            let stays = (amplitude - before).abs() <= tolerance * amplitude;
+            if stays && error <= tolerance * amplitude {
+                return Ok(CellPeak { omega, amplitude, harmonics });
+            }
+            // A peak that has wandered off is followed before the grid narrows.
+            step *= if near[0] < omega && omega < near[last] { 0.5 } else { 1.0 };
+            (centre, before, known) = (omega, amplitude, points);
+        }
+        Ok(CellPeak::missing(harmonics))
+    }
+
+    fn balance(&self, harmonics: usize) -> Result<ForcedBalance<'_>, Error> {
+        let (model, settings, dof) = self.cell;
+        let settings = Settings { harmonics: HarmonicChoice::Fixed(harmonics), ..*settings };
+        let observe = std::slice::from_ref(dof);
+        Ok(ForcedBalance::new(model, settings, observe)?.watched(self.progress))
+    }
+}
+
+/// Half the range of the only DOF that is observed.
+fn height(point: &Point) -> f64 {
+    if !point.is_solved() {
+        return f64::NAN;
+    }
+    let table = SampleTable::new(Harmonics::new(point.harmonics, false));
+    let mut series = vec![0.0; table.harmonics().slots()];
+    table.harmonics().write_series(&point.displacement, &mut series);
+    amplitude(&table, &series, Measure::HalfRange)
+}
+
+/// The top of the parabola through the highest point and its neighbours, or that point.
+fn vertex(omega: &[f64], heights: &[f64]) -> (f64, f64) {
+    let order = |&a: &usize, &b: &usize| heights[a].total_cmp(&heights[b]);
+    let top = (0..heights.len()).filter(|&at| !heights[at].is_nan()).max_by(order).unwrap_or(0);
+    let own = (omega[top], heights[top]);
+    if top == 0 || top + 1 == heights.len() {
+        return own;
+    }
+    let (left, right) = (heights[top - 1] - own.1, heights[top + 1] - own.1);
+    // Of points that are equally far.
+    let (rise, bend) = (0.5 * (right - left), right + left);
+    let share = -rise / bend;
+    if !(bend < 0.0 && share.is_finite()) {
+        return own;
+    }
+    (own.0 + share * (omega[top + 1] - omega[top]), own.1 - 0.5 * rise * rise / bend)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::vertex;
+
+    #[test]
+    fn the_vertex_of_a_parabola_is_found() {
+        let omega = [1.0, 2.0, 3.0, 4.0, 5.0];
+        let heights = omega.map(|w: f64| 7.0 - (w - 3.3) * (w - 3.3));
+        let (at, height) = vertex(&omega, &heights);
+        assert!((at - 3.3).abs() < 1e-12 && (height - 7.0).abs() < 1e-12);
+        assert_eq!(vertex(&omega, &[3.0, 2.0, f64::NAN, 1.0, 0.0]), (1.0, 3.0));
+        assert_eq!(vertex(&omega, &[f64::NAN, 2.0, 1.0, 1.0, 0.0]), (2.0, 2.0));
+    }
+}
