@@ -102,7 +102,7 @@ def test_dataset(frf):
     }
     assert all(variable.attrs["long_name"] for variable in dataset.variables.values())
     flags = dataset["status"].attrs
-    assert flags["flag_values"].tolist() == list(range(9))
+    assert flags["flag_values"].tolist() == list(range(10))
     assert flags["flag_meanings"].split() == [
         "converged",
         "stalled",

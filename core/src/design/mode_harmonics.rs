@@ -16,8 +16,10 @@ const FEWEST: usize = 5;
 /// Newton iterations in more harmonics.
 const ITERATIONS: usize = 20;
 
-/// Share of the tolerance below which an error lets the next point have fewer harmonics.
+/// Share of the tolerance below which an error is generous, …
 const GENEROUS: f64 = 0.1;
+/// … and how many points with such errors in a row let the next one have fewer harmonics.
+const STEADY: usize = 5;
 
 /// Relative residual of the linear equations of an error estimate.
 const ESTIMATE: f64 = 1e-2;
@@ -26,6 +28,11 @@ const ESTIMATE: f64 = 1e-2;
 pub(super) struct Truncation<'a> {
     pub(super) equations: ModeEquations<'a>,
     finer: Option<ModeEquations<'a>>,
+    /// Points in a row with generous errors.
+    generous: usize,
+    /// Whether harmonics have been given up, and those that were asked for after that: so many stay.
+    eased: bool,
+    lowest: usize,
     /// Work in harmonics that have been left.
     profile: Profile,
     estimate: Duration,
@@ -66,7 +73,15 @@ fn above(order: usize) -> usize {
 
 impl<'a> Truncation<'a> {
     pub(super) fn new(equations: ModeEquations<'a>) -> Self {
-        Self { equations, finer: None, profile: Profile::default(), estimate: Duration::ZERO }
+        Self {
+            equations,
+            finer: None,
+            generous: 0,
+            eased: false,
+            lowest: 0,
+            profile: Profile::default(),
+            estimate: Duration::ZERO,
+        }
     }
 
     /// A point in as many harmonics as the tolerance asks for, and what more could change.
@@ -93,6 +108,10 @@ impl<'a> Truncation<'a> {
                 self.leave(&equations);
                 return (z, step);
             };
+            self.generous = 0;
+            if self.eased {
+                self.lowest = equations.harmonics().highest();
+            }
             z = finer;
             let left = std::mem::replace(&mut self.equations, equations);
             self.leave(&left);
@@ -103,12 +122,18 @@ impl<'a> Truncation<'a> {
     /// asks for.
     pub(super) fn ease(&mut self, step: &Step, settings: &ModeSettings) {
         let fixed = settings.harmonics != HarmonicChoice::Auto;
-        if fixed || step.error() > GENEROUS * settings.tolerance {
+        let generous = step.error() <= GENEROUS * settings.tolerance;
+        self.generous = if generous { self.generous + 1 } else { 0 };
+        if fixed || self.generous < STEADY {
             return;
         }
         let kept = self.equations.harmonics().highest();
         let levels = std::iter::successors(Some(fewest(settings)), |order| Some(above(*order)));
         if let Some(fewer) = levels.take_while(|order| *order < kept).last() {
+            if fewer < self.lowest {
+                return;
+            }
+            (self.generous, self.eased) = (0, true);
             let equations = self.in_harmonics(fewer);
             let left = std::mem::replace(&mut self.equations, equations);
             self.leave(&left);
