@@ -113,6 +113,7 @@ def test_dataset(frf):
         "samples_limit",
         "steps_limit",
         "effort_limit",
+        "free",
     ]
     assert dataset.attrs["stickslip_version"] == ss.__version__
     assert json.loads(dataset.attrs["settings"])["residual"] == 1.5
