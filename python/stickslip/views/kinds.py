@@ -34,6 +34,7 @@ VIEWS: Mapping[str, tuple[str, str]] = {
     "uncertainty": ("stickslip.views.uncertainty", "UncertaintyView"),
     "limit_cycles": ("stickslip.views.cycles", "CycleView"),
     "campbell": ("stickslip.views.campbell", "CampbellView"),
+    "speed_response": ("stickslip.views.speeds", "SpeedView"),
     "sweep": ("stickslip.views.sweeps", "SweepView"),
     "stability_map": ("stickslip.views.cycles", "MapView"),
     "flutter_map": ("stickslip.views.flutter", "FlutterView"),
