@@ -13,7 +13,6 @@ from stickslip import reference as reference
 from stickslip import study as study
 from stickslip._core import __version__ as __version__
 from stickslip.analyses.design_map import design_map as design_map
-from stickslip.analyses.design_map import speed_response as speed_response
 from stickslip.analyses.design_map import spinning as spinning
 from stickslip.analyses.flutter_formulas import rigid_limit_cycle as rigid_limit_cycle
 from stickslip.analyses.flutter_formulas import single_harmonic_cycles as single_harmonic_cycles
@@ -104,6 +103,7 @@ from stickslip.results.motion_class import MotionClass as MotionClass
 from stickslip.results.nonlinear_modes import NonlinearModes as NonlinearModes
 from stickslip.results.optimal_damper import OptimalDamper as OptimalDamper
 from stickslip.results.result import Result
+from stickslip.results.speed_response import SpeedResponse as SpeedResponse
 from stickslip.results.static_response import StaticResponse
 from stickslip.results.store import load as load
 from stickslip.results.sweep import Sweep as Sweep
@@ -331,6 +331,15 @@ def single_harmonic(
     estimate: bool = True,
     progress: Progress = None,
 ) -> ForcedResponse: ...
+def speed_response(
+    build: Model | Callable[[float], Model],
+    speed: ArrayLike,
+    *,
+    dof: str,
+    engine_order: float | None = None,
+    harmonics: int = 7,
+    progress: Progress = None,
+) -> SpeedResponse: ...
 def stability_map(
     model: Model,
     negative_damping: ArrayLike,

@@ -226,6 +226,9 @@ def whole_number(value: object, entry: str, *, smallest: int = 0, largest: int =
     return number
 
 
+_NO_UNITS = '; give numbers alone, in SI units, or in those that units= names: units="t-mm-s"'
+
+
 def real_matrix(value: object, entry: str) -> Matrix:
     """Return a two-dimensional array of real numbers, dense, in rows, as a copy.
 
@@ -248,7 +251,8 @@ def real_matrix(value: object, entry: str) -> Matrix:
             f"{entry}: complex entries; give real matrices (put structural damping into damping)"
         )
     if array.dtype.kind not in "fiu":
-        raise ModelError(f"{entry}: entries of type {array.dtype} are not real numbers")
+        remedy = _NO_UNITS if array.dtype.kind == "U" else ""
+        raise ModelError(f"{entry}: entries of type {array.dtype} are not real numbers{remedy}")
     if array.ndim != 2:
         raise ModelError(
             f"{entry}: {array.ndim} dimension(s), shape {array.shape}; give rows and columns, "

@@ -123,6 +123,7 @@ BAD_MASS = [
     (944.6, r"mass: 0 dimension\(s\)"),
     ([[1.0, 0.0], [1.0]], "mass: rows of unequal length"),
     ([["1", "0", "0"]] * 3, "mass: entries of type <U1 are not real numbers"),
+    ([["1 kg", "0", "0"]] * 3, "numbers alone, in SI units, or in those that units= names: units="),
     ([[None] * 3] * 3, "mass: entries of type object are not real numbers"),
     (np.eye(3, dtype=bool), "mass: entries of type bool"),
     (np.zeros((0, 0)), "mass: 0 x 0; a structure needs at least one dof"),

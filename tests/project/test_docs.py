@@ -150,7 +150,7 @@ def _completed(given: Mapping[str, object], example: Mapping[str, object]) -> di
         if isinstance(table, dict) and isinstance(sample, dict):
             # These have frequencies of their own, or none.
             own = ("limit-cycles", "nonlinear-modes", "static", "fit", "uncertainty")
-            own += ("campbell", "flutter-map")
+            own += ("campbell", "speed-response", "flutter-map")
             driven = table.get("kind") not in own
             needed = ("mass", "stiffness", "omega") if driven else ("mass", "stiffness")
             whole[name] = {key: sample[key] for key in needed if key in sample} | table

@@ -137,6 +137,7 @@ def test_a_file_of_the_first_version_is_read(tmp_path):
             "uncertainty",
             "flutter_map",
             "campbell",
+            "speed_response",
             "sweep",
         }
     ),

@@ -141,7 +141,8 @@ BAD_ENTRIES = [
     (
         "[[2, 0.5], [0.5, 1]]",
         '[["2 kg", 0], [0, 1]]',
-        "structure: mass[1][1]: '2 kg' is not a number",
+        "structure: mass[1][1]: '2 kg' is not a number; give numbers alone, in SI units or in "
+        "those that 'units' in [structure] names, units = \"t-mm-s\"",
     ),
     (
         "[[2, 0.5], [0.5, 1]]",

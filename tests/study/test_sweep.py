@@ -358,6 +358,22 @@ def test_engine_orders_are_swept_and_drawn_over_the_speed_of_the_rotor(tmp_path)
     assert {"EO 2", "EO 3"} < set(named)
     one = swept.results[0].plot("tip", omega_unit="rpm")
     assert one.get_xlabel() == "rotor speed at engine order 2 [rpm]"
+    (table,) = view_of([swept]).tables([("", swept)], "", ["tip"], "auto")
+    cells = {str(column.header): list(column.cells) for column in table.columns}
+    for hertz, rpm, order in zip(cells["Hz"], cells["rotor rpm"], (2, 3), strict=True):
+        assert float(rpm) == pytest.approx(float(hertz) * 60.0 / order, rel=1e-5)
+
+
+def test_tables_have_rpm_where_they_are_asked_for():
+    (found,) = Study.parse(STUDY).run()
+    damped = ss.damper_curve(found.model, dof="tip", slip_force=[5.0, 20.0], omega=(700, 900))
+    for result in (found, damped):
+        for unit, headed in (("rad/s", False), ("Hz", False), ("rpm", True)):
+            (table,) = view_of([result], unit).tables([("", result)], "", ["tip"], "auto")
+            cells = {str(column.header): list(column.cells) for column in table.columns}
+            assert ("rpm" in cells) == headed
+            for omega, rpm in zip(cells["rad/s"], cells.get("rpm", ()), strict=headed):
+                assert float(rpm) == pytest.approx(float(omega) * 30.0 / np.pi, rel=1e-5)
 
 
 def test_a_mistuned_disk_under_another_engine_order_keeps_its_level():

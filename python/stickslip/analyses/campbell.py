@@ -57,7 +57,7 @@ def campbell(
     found, members = [], []
     with Run("campbell", progress) as run:
         for number, speed in enumerate(speeds.tolist()):
-            model = models if isinstance(models, Model) else _built(models, speed)
+            model = model_at(models, speed)
             if settings.diagram != "campbell" and not isinstance(model, BladedDisk):
                 raise ModelError(
                     f"diagram: {settings.diagram} is that of a tuned disk; give ss.BladedDisk(...)",
@@ -80,7 +80,10 @@ def campbell(
     )
 
 
-def _built(build: object, speed: float) -> Model:
+def model_at(build: object, speed: float) -> Model:
+    """Return the model at a speed; one that does not depend on it is returned as it is."""
+    if isinstance(build, Model):
+        return build
     if not callable(build):
         raise ModelError(f"models: {brief(build)} is neither a Model nor a function of the speed")
     model = build(speed)

@@ -1,4 +1,4 @@
-"""Peaks over two parameters of a design, and responses along a speed that changes the model."""
+"""Peaks over two parameters of a design, and structures that change with the speed."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from stickslip.analyses.run import refusals
 from stickslip.checks import brief, members, real_matrix, real_number, set_fields, text
 from stickslip.errors import ModelError
 from stickslip.model import Model, Structure
-from stickslip.results.design_map import DesignMap, SpeedResponse
+from stickslip.results.design_map import DesignMap
 from stickslip.settings.peaks import PeakSettings
 from stickslip.units import physical_number
 
@@ -115,53 +115,6 @@ def _amplitudes(
     amplitude = np.array(result.amplitude(dof))
     amplitude[~result.converged] = np.nan
     return amplitude
-
-
-def speed_response(
-    build: Callable[[float], Model],
-    speed: ArrayLike,
-    *,
-    engine_order: float,
-    dof: str,
-    harmonics: int = 7,
-) -> SpeedResponse:
-    """Response along the speed of rotation, which changes the model itself.
-
-    At a speed W the forces have the frequency of their engine order, E W; `build` makes the model
-    there, with the centrifugal loads of dampers and the stiffness of the turning blades.
-
-    Parameters
-    ----------
-    build : callable
-        Makes the model of a speed [rad/s].
-    speed : array_like
-        Speeds of rotation [rad/s].
-    engine_order : float
-        Frequency of the forces over the speed.
-    dof : str
-        The degree of freedom that is looked at.
-    harmonics : int, optional
-        Highest harmonic kept.
-
-    Returns
-    -------
-    SpeedResponse
-        Amplitude at every speed; nan where none was found.
-
-    Raises
-    ------
-    ModelError
-        If a speed is not positive, or makes no model.
-    """
-    order = real_number(engine_order, "engine_order")
-    given = members(speed, "speed", "[...]")  # type: ignore[arg-type]
-    speeds = np.array([physical_number(one, "rad/s", "speed") for one in given])
-    if not (speeds.size and (speeds > 0.0).all() and order > 0.0):
-        raise ModelError(f"speed: {brief(speed)} of order {order:g}; give numbers above zero")
-    found = [_amplitudes(build(one), dof, np.array([order * one]), harmonics)[0] for one in speeds]
-    own = SpeedResponse(speeds, order * speeds, np.array(found), dof, order)
-    set_fields(own, **vars(own))
-    return own
 
 
 def spinning(

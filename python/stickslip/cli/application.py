@@ -28,7 +28,7 @@ Dofs = Annotated[
 ]
 Hertz = Annotated[bool, typer.Option("--hertz", help="Frequency axes in Hz.")]
 Rpm = Annotated[
-    bool, typer.Option("--rpm", help="Frequency axes in rpm; of a disk the speed of its rotor.")
+    bool, typer.Option("--rpm", help="Frequencies in rpm; of a disk the speed of its rotor.")
 ]
 
 

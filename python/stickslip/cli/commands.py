@@ -24,7 +24,7 @@ _omega = partial(typer.Option, metavar="OMEGA")
 
 
 @command("stickslip show results/snecma-beam-20.313.nc")
-def show(results: Files) -> None:
+def show(results: Files, rpm: Rpm = False) -> None:
     """Print what results hold: the model, the numbers, what was assumed, what did not converge."""
     from stickslip import load
     from stickslip.cli import console
@@ -36,7 +36,7 @@ def show(results: Files) -> None:
         if number > 0:
             console.tell("")
         console.tell(str(file))
-        view = view_of([result])
+        view = view_of([result], omega_unit(hertz=False, rpm=rpm))
         console.grid(view.facts(result))
         console.tell("")
         shown = notable_dofs(result.model, result.dofs)

@@ -62,7 +62,8 @@ def run(
         make_folder(out)
         require_writable(out)
     results = _compute(loaded, out, clock, quiet=quiet)
-    view, output = view_of(results), loaded.tables.output
+    output = loaded.tables.output
+    view = view_of(results, output.omega_unit)
     if not quiet:
         levels = ["" if one.level is None else f"{one.level:.10g}" for one in loaded.cases]
         label = "" if loaded.tables.analysis.levels is None else "level"

@@ -75,7 +75,8 @@ class Pane:
 
 def curve(study: Study, result: ForcedResponse, dof: str) -> Pane:
     """Return the response curve between its linear limits, with its error band and its peak."""
-    view, output = view_of([result]), study.tables.output
+    output = study.tables.output
+    view = view_of([result], output.omega_unit)
     return Pane(
         "curve",
         panels=list(view.panels([result], [dof], output)),
@@ -104,7 +105,8 @@ def damper(
     model = result.model
     common, now = present(model, parameter)
     found = _optimum(study, result, dof, parameter, common, now, look)
-    view, output = view_of([found]), study.tables.output
+    output = study.tables.output
+    view = view_of([found], output.omega_unit)
     at, unit = now, found.curve.settings.variation.unit.removesuffix("1")
     if parameter == "level" and force_level(model):
         at, unit = force_level(model), "N"

@@ -47,7 +47,7 @@ def report(
     dofs : str or iterable of str, optional
         Degrees of freedom to show. Default: those with a force or a contact.
     omega_unit : {"rad/s", "Hz", "rpm"}, optional
-        Unit of the frequency axes; rpm of a disk are those of the rotor.
+        Unit of the frequency axes, and rpm of tables; of a disk rpm are those of the rotor.
     length_unit : {"auto", "m", "mm", "um"}, optional
         Unit of the amplitudes. Default: that which suits the numbers.
 

@@ -14,7 +14,7 @@ from stickslip.plot.arguments import checked_labels, several
 from stickslip.plot.figure import figure
 from stickslip.plot.options import SpeedOptions
 from stickslip.results.campbell import Campbell
-from stickslip.results.design_map import SpeedResponse
+from stickslip.results.speed_response import SpeedResponse
 
 
 @figure

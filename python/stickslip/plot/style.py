@@ -21,6 +21,7 @@ from matplotlib.ticker import (
 )
 
 from stickslip.checks import brief
+from stickslip.disk.rotor import rotor_order
 from stickslip.errors import ModelError
 from stickslip.results.arrays import Float
 from stickslip.results.stability import STATES, States
@@ -76,8 +77,8 @@ def omega_scale(unit: OmegaUnit, results: Any) -> Scale:
     Of a disk rpm are those of the rotor: the frequency over the engine order.
     """
     models = [one.model for one in (results if isinstance(results, Iterable) else [results])]
-    orders = {getattr(getattr(model, "disk", model), "engine_order", None) for model in models}
-    order = orders.pop() if len(orders) == 1 else None
+    orders = {rotor_order(model) for model in models}
+    order = orders.pop() if len(orders) == 1 else 0
     if unit != "rpm" or not order:
         return OMEGA[unit]
     return rotor_speed(order)

@@ -1,4 +1,4 @@
-"""Peaks over two parameters of a design, and amplitudes along a speed."""
+"""Peaks over two parameters of a design."""
 
 from __future__ import annotations
 
@@ -44,21 +44,3 @@ class DesignMap:
             name: float(values[at])
             for name, values, at in zip(self.names, self.values, place, strict=True)
         }
-
-
-@dataclass(frozen=True, eq=False)
-class SpeedResponse:
-    """Amplitudes along the speed of rotation."""
-
-    speed: Float
-    """(n,) Speeds of rotation [rad/s]."""
-    omega: Float
-    """(n,) Angular frequency of the forces [rad/s]."""
-    amplitude: Float
-    """(n,) Amplitude [m]; nan where none was found."""
-    dof: str
-    """The degree of freedom."""
-    engine_order: float
-    """Frequency of the forces over the speed."""
-
-    plot = Drawn("speed_response")

@@ -36,6 +36,7 @@ KINDS: Mapping[str, tuple[str, str]] = {
     "fit": ("stickslip.results.fit", "Fit"),
     "uncertainty": ("stickslip.results.uncertainty", "Uncertainty"),
     "campbell": ("stickslip.results.campbell", "Campbell"),
+    "speed_response": ("stickslip.results.speed_response", "SpeedResponse"),
     "sweep": ("stickslip.results.sweep", "Sweep"),
     "flutter_map": ("stickslip.results.flutter_map", "FlutterMap"),
     "stability_map": ("stickslip.results.limit_cycles", "StabilityMap"),

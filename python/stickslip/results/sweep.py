@@ -201,7 +201,7 @@ class Sweep(Result):
                 name: int(count)
                 for name, count in _summed([one.counters for one in results]).items()
             },
-            diagnostics=_told(results, _written(settings, len(results))),
+            diagnostics=told(results, _written(settings, len(results))),
             settings=settings,
             results=results,
         )
@@ -224,7 +224,7 @@ def _figure_of(result: Result) -> str:
     return ""
 
 
-def _told(results: tuple[Result, ...], names: Sequence[str]) -> tuple[Diagnostic, ...]:
+def told(results: Sequence[Result], names: Sequence[str]) -> tuple[Diagnostic, ...]:
     """Return what is said of the results: once what has the same code and data, and of which."""
     found: dict[tuple[Any, ...], dict[int, Diagnostic]] = {}
     for number, one in enumerate(results):

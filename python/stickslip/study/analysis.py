@@ -25,6 +25,7 @@ from stickslip.analyses.nonlinear_modes import nonlinear_modes
 from stickslip.analyses.optimal_damper import optimal_damper
 from stickslip.analyses.run import Progress, share
 from stickslip.analyses.single_harmonic import single_harmonic
+from stickslip.analyses.speed_response import speed_response
 from stickslip.analyses.static_response import static_response
 from stickslip.analyses.transient import transient
 from stickslip.analyses.uncertainty import uncertainty
@@ -42,6 +43,7 @@ from stickslip.settings.modes import ModeKeys
 from stickslip.settings.motion import BasinKeys, StaticKeys, TransientKeys
 from stickslip.settings.orbits import CertifySettings, OrbitKeys, SingleHarmonicKeys
 from stickslip.settings.peaks import DamperKeys, MistuningKeys, OptimumKeys
+from stickslip.settings.speed import SpeedKeys
 from stickslip.settings.uncertainty import UncertaintyKeys
 from stickslip.study.flow_tables import FlowKeys
 from stickslip.study.matrices import (
@@ -219,6 +221,15 @@ class NodalDiametersTable(CampbellKeys, AnalysisTable):
     dof_keys = ()
 
 
+class SpeedResponseTable(SpeedKeys, AnalysisTable):
+    """Response along the speed of rotation, which changes the model itself."""
+
+    kind: Literal["speed-response"] = Field(description="The analysis.")
+    analysis: ClassVar = speed_response
+    of_speed: ClassVar = True
+    dof_keys = ("dof",)
+
+
 class BasinMapTable(BasinKeys, AnalysisTable):
     """What becomes of free motions from many starts."""
 
@@ -331,6 +342,7 @@ KINDS: Mapping[str, type[AnalysisTable]] = {
         CampbellTable,
         SafeTable,
         NodalDiametersTable,
+        SpeedResponseTable,
         BasinMapTable,
         MistuningStudyTable,
         LimitCyclesTable,

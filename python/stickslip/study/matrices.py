@@ -75,6 +75,14 @@ def _rows(value: object) -> object:
     widths = {len(row) for row in value if isinstance(row, list)} if isinstance(value, list) else {}
     if len(widths) > 1:
         raise EntryError("", " has rows of different lengths")
+    for number, row in enumerate(value if isinstance(value, list) else [], 1):
+        for place, entry in enumerate(row if isinstance(row, list) else [], 1):
+            if isinstance(entry, str):
+                raise EntryError(
+                    "",
+                    f"[{number}][{place}]: {brief(entry)} is not a number; give numbers alone, in "
+                    "SI units or in those that 'units' in [structure] names, units = \"t-mm-s\"",
+                )
     return value
 
 

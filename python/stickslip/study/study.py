@@ -135,6 +135,7 @@ class Study:
             tables = tables.model_copy(update={"analysis": analysis})
             model = model_of(tables, Path(folder))
             _check_dofs(tables, model)
+            _check_speed(tables)
             _check_name(tables.name or name)
         return cls(tables.name or name, tables, model, source, Path(folder))
 
@@ -263,6 +264,15 @@ def _check_name(name: str) -> None:
         raise ModelError(
             f"name = {brief(name)} has more than {_LONGEST_NAME} bytes, too long for the names of "
             "result files; give the study a shorter 'name'"
+        )
+
+
+def _check_speed(tables: StudyTables) -> None:
+    """Refuse a sweep, of a model at one speed, for what needs that of several."""
+    if tables.sweep is not None and tables.analysis.of_speed and depends_on_speed(tables):
+        raise ModelError(
+            f"sweep: a {tables.analysis.kind} makes the model anew at each speed, a sweep varies "
+            "that of one speed; leave out [sweep], and write a study file per value"
         )
 
 

@@ -17,7 +17,7 @@ from stickslip.results.exact_response import ExactResponse
 from stickslip.results.fields import Int
 from stickslip.results.forced_response import ForcedResponse
 from stickslip.results.stability import stability_counts
-from stickslip.views.kinds import LENGTHS, Dofs, Rows, View
+from stickslip.views.kinds import LENGTHS, RPM, Dofs, Rows, View
 from stickslip.views.picture import Panel, Panels
 from stickslip.views.tables import Row, Table, bound_rows, tabulated
 
@@ -33,7 +33,7 @@ class CurveView(View[ForcedResponse]):
 
     texts = ("dof",)
     # short headings: eight columns have to fit on a terminal of 80
-    numbers = ("rad/s", "Hz", "peak [{}]", "error [{}]", "H", "converged")
+    numbers = ("rad/s", "Hz", RPM, "peak [{}]", "error [{}]", "H", "converged")
 
     def rows(self, result: ForcedResponse, dofs: Dofs, length: float) -> Rows:
         """Return a row per DOF."""
@@ -43,6 +43,7 @@ class CurveView(View[ForcedResponse]):
                 row.dof,
                 f"{row.omega:#.6g}{mark}",
                 f"{row.omega / (2 * pi):#.6g}",
+                *self.in_rpm(result.model, row.omega),
                 f"{row.amplitude / length:#.5g}",
                 "-" if row.amplitude == inf else f"{row.error_estimate / length:.1g}",
                 "exact" if isinstance(result, ExactResponse) else f"{row.harmonics}",

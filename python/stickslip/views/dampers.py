@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from stickslip.drawn import plots
 from stickslip.results.damper_curve import DamperCurve
 from stickslip.results.optimal_damper import OptimalDamper
-from stickslip.views.kinds import Dofs, Rows, View
+from stickslip.views.kinds import RPM, Dofs, Rows, View
 from stickslip.views.picture import Panels
 from stickslip.views.tables import Row, assumed, bound_rows, counted
 
@@ -21,7 +21,7 @@ class DamperView(View[DamperCurve]):
     """The ends of every curve and its lowest peak."""
 
     texts = ("dof", "", "varied")
-    numbers = ("value", "peak [{}]", "rad/s", "error", "H")
+    numbers = ("value", "peak [{}]", "rad/s", RPM, "error", "H")
 
     def rows(self, result: DamperCurve, dofs: Dofs, length: float) -> Rows:
         """Return first, lowest and last solved value."""
@@ -37,6 +37,7 @@ class DamperView(View[DamperCurve]):
                 f"{result.values[index]:.6g}",
                 f"{result.amplitude[index] / length:#.7g}",
                 f"{result.omega[index]:#.6g}",
+                *self.in_rpm(result.model, result.omega[index]),
                 f"{result.error_estimate[index] / result.amplitude[index]:.1e}",
                 f"{result.harmonics[index]}",
             )
@@ -70,7 +71,7 @@ class OptimumView(View[OptimalDamper]):
     """Every local minimum, the least first."""
 
     texts = ("dof", "varied")
-    numbers = ("value", "peak [{}]", "rad/s")
+    numbers = ("value", "peak [{}]", "rad/s", RPM)
 
     def rows(self, result: OptimalDamper, dofs: Dofs, length: float) -> Rows:
         """Return a row per minimum."""
@@ -82,6 +83,7 @@ class OptimumView(View[OptimalDamper]):
                 f"{minimum.value:.6g}",
                 f"{minimum.amplitude / length:#.7g}",
                 f"{minimum.omega:#.6g}",
+                *self.in_rpm(result.model, minimum.omega),
             )
 
     def facts(self, result: OptimalDamper) -> list[Row]:

@@ -6,10 +6,12 @@ import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping, Sequence
 from importlib import import_module
-from math import inf
+from math import inf, pi
 from typing import TYPE_CHECKING, Any, Generic, TypeAlias, TypeVar
 
+from stickslip.disk.rotor import rotor_order
 from stickslip.errors import ModelError
+from stickslip.model import Model
 from stickslip.results.diagnostic import Severity
 from stickslip.results.result import Result
 from stickslip.views.picture import Panels
@@ -32,6 +34,7 @@ VIEWS: Mapping[str, tuple[str, str]] = {
     "uncertainty": ("stickslip.views.uncertainty", "UncertaintyView"),
     "limit_cycles": ("stickslip.views.cycles", "CycleView"),
     "campbell": ("stickslip.views.campbell", "CampbellView"),
+    "speed_response": ("stickslip.views.speeds", "SpeedView"),
     "sweep": ("stickslip.views.sweeps", "SweepView"),
     "stability_map": ("stickslip.views.cycles", "MapView"),
     "flutter_map": ("stickslip.views.flutter", "FlutterView"),
@@ -41,6 +44,8 @@ VIEWS: Mapping[str, tuple[str, str]] = {
 
 
 _ANY = "?"
+RPM = "{rpm}"
+"""Heading of frequencies in rpm, which tables have on demand."""
 LENGTHS = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "nm": 1e-9}
 """Units of amplitudes in tables, in metres."""
 _NUMBER = re.compile(r"[+-]?[0-9.]+(e[+-]?[0-9]+)?")
@@ -63,12 +68,20 @@ class View(ABC, Generic[Kind]):
     """Headings of the first columns."""
     numbers: Sequence[str] = ()
     """Headings of the numbers behind them; ``{}`` stands for the unit of length."""
+    rpm: str = ""
+    """What `RPM` stands for; empty: tables are without that column."""
     last: Sequence[str] = ()
     """Headings of texts behind the numbers."""
 
     def headings(self, dofs: Dofs, length_unit: str) -> list[str]:
         """Return the headings of the numbers."""
-        return [heading.format(length_unit) for heading in self.numbers]
+        wanted = [heading for heading in self.numbers if heading != RPM or self.rpm]
+        return [heading.format(length_unit, rpm=self.rpm) for heading in wanted]
+
+    def in_rpm(self, model: Model, omega: float) -> list[str]:
+        """Return the cell of the column `RPM`, if there is one; of a disk it is its rotor's."""
+        speed = omega / (rotor_order(model) or 1.0)
+        return [f"{speed * 30 / pi:#.6g}"] if self.rpm else []
 
     @abstractmethod
     def rows(self, result: Kind, dofs: Dofs, length: float) -> Rows:
@@ -155,8 +168,10 @@ def _texts(result: Result, severity: Severity) -> list[str]:
     return [one.text for one in result.diagnostics if one.severity is severity]
 
 
-def view_of(results: Sequence[Result]) -> View[Any]:
+def view_of(results: Sequence[Result], omega_unit: str = "rad/s") -> View[Any]:
     """Return the view of some results.
+
+    Tables have frequencies in rpm too where that is the unit, and of a disk the rotor's speed.
 
     Raises
     ------
@@ -176,4 +191,8 @@ def view_of(results: Sequence[Result]) -> View[Any]:
         raise ModelError(f"results: {kinds} do not go together; name one kind at a time")
     ((module, name),) = views
     view: View[Any] = getattr(import_module(module), name)()
+    if any(rotor_order(result.model) for result in results):
+        view.rpm = "rotor rpm"
+    elif omega_unit == "rpm":
+        view.rpm = "rpm"
     return view

@@ -22,7 +22,7 @@ class SweepView(View[Sweep]):
 
     def rows(self, result: Sweep, dofs: Dofs, length: float) -> Rows:
         """Return the rows of all results."""
-        view = view_of(result.results)
+        view = self._of(result)
         return [row for one in result.results for row in view.rows(one, dofs, length)]
 
     def tables(
@@ -33,7 +33,7 @@ class SweepView(View[Sweep]):
         length_unit: str,
     ) -> list[Table]:
         """Tabulate the results, each with its value of the parameter."""
-        view, first = _view(results[0][1]), results[0][1]
+        view, first = self._of(results[0][1]), results[0][1]
         named = [
             (f"{name} {text}".strip() if label else text, member)
             for name, result in results
@@ -41,6 +41,12 @@ class SweepView(View[Sweep]):
         ]
         heading = first.parameter.replace("_", " ")
         return view.tables(named, heading, dofs, length_unit)
+
+    def _of(self, result: Sweep) -> View[Any]:
+        """Return the view of the results, whose tables have the columns of this one."""
+        view = _view(result)
+        view.rpm = view.rpm or self.rpm
+        return view
 
     def about(self, result: Sweep) -> list[Row]:
         """Say what was varied."""
