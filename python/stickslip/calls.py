@@ -108,3 +108,11 @@ def misfit(
         if one.default is inspect.Parameter.empty and one.name not in given:
             return f"{name}: {one.name} is missing; give {one.name}=..."
     return None
+
+
+def outside() -> int:
+    """Return how far up the caller of this package is, for a warning of the function that asks."""
+    frame, level = sys._getframe(1), 1
+    while frame.f_back and frame.f_globals["__name__"].partition(".")[0] == "stickslip":
+        frame, level = frame.f_back, level + 1
+    return level

@@ -102,6 +102,10 @@ def test_modal_coordinates_are_observed_if_they_are_named() -> None:
     assert frf.harmonics.max() < 60
     named = ss.forced_response(blade, [1600.0], 3, observe=["mode-2"])
     assert named.dofs == ("mode-2",)
+    with pytest.warns(
+        UserWarning, match="observe names modal coordinates, 1 of them: .* a hundred times"
+    ):
+        ss.forced_response(blade, [1600.0, 1601.0], observe=["tip", "mode-2"], max_harmonics=9)
 
 
 def many_contacts(slipping: int) -> ss.Model:

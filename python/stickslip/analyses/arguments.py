@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterable, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.calls import outside
 from stickslip.checks import brief, unknown
 from stickslip.disk.bladed_disk import ALL_SECTORS
 from stickslip.errors import ModelError
@@ -14,7 +16,7 @@ from stickslip.model import Model
 from stickslip.model.notable import loaded_dofs, physical_dofs
 from stickslip.model.state import State
 from stickslip.results.arrays import Int
-from stickslip.settings.balance import HarmonicSettings, ObserveKeys
+from stickslip.settings.balance import BalanceKeys, HarmonicSettings, ObserveKeys
 from stickslip.settings.entries import Residual
 
 
@@ -48,6 +50,19 @@ def observed_dofs(keys: ObserveKeys, model: Model) -> tuple[str, ...]:
     if keys.observe is None:
         return physical_dofs(model)
     return known_dofs(keys.observe, "observe", "dof", model)
+
+
+def warn_of_effort(keys: BalanceKeys, model: Model, dofs: tuple[str, ...]) -> None:
+    """Say before long work begins that it is long: every named modal coordinate has to converge."""
+    modal = set(dofs) - set(physical_dofs(model))
+    several = isinstance(keys.omega, tuple) or keys.omega.size > 1
+    if modal and model.contacts and several and keys.fixed_harmonics is None:
+        warnings.warn(
+            f"observe names modal coordinates, {len(modal)} of them: with harmonics='auto' each "
+            "has to meet the tolerance at every point, which may take a hundred times as long; leave them out "
+            "of the curve, and compute the one point that needs them with a number of harmonics",
+            stacklevel=outside(),
+        )
 
 
 def known_dofs(names: Iterable[str], entry: str, kind: str, model: Model) -> tuple[str, ...]:

@@ -15,6 +15,7 @@ from stickslip.analyses.arguments import (
     points_of,
     require_forced,
     require_held,
+    warn_of_effort,
 )
 from stickslip.analyses.assumptions import arrays_of, balance_assumptions, uniqueness
 from stickslip.analyses.branch_assumptions import branch_assumptions
@@ -86,6 +87,7 @@ def forced_response(
         require_memory(asked, orders, len(dofs), points_of(model))
     require_forced(model, settings)
     require_held(model, kept.residual)
+    warn_of_effort(settings, model, dofs)
     with Run("forced response", progress, model) as run:
         with refusals(model):
             solution = _core.forced_response(

@@ -128,6 +128,7 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
             with warnings.catch_warnings(), _ended_by_signals(ended):
                 # the table marks these peaks
                 warnings.filterwarnings("ignore", message="peak of ", category=UserWarning)
+                warnings.showwarning = lambda text, *_, **__: complain("note", str(text))
                 command(*args, **kwargs)
         except (typer.Exit, typer.Abort):
             raise

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 import warnings
 from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property
@@ -11,6 +10,7 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 
 from stickslip import _core
+from stickslip.calls import outside
 from stickslip.checks import brief
 from stickslip.disk.wave_ring import moving
 from stickslip.errors import ModelError
@@ -247,7 +247,7 @@ def _told(
                 "between the computed points the response could not be solved everywhere, and may "
                 "be higher there; compute more points to see where and why"
             )
-        warnings.warn(f"peak of {dof!r}: {text}", stacklevel=_outside())
+        warnings.warn(f"peak of {dof!r}: {text}", stacklevel=outside())
     return Peak(*peak, at_edge, beside_gap)
 
 
@@ -256,17 +256,9 @@ def _unbounded(dof: str, omega: float) -> Peak:
     warnings.warn(
         f"peak of {dof!r}: neither damping nor friction bounds the resonance at {omega:.6g} rad/s; "
         "add damping, or more friction",
-        stacklevel=_outside(),
+        stacklevel=outside(),
     )
     return Peak(omega, np.inf, at_edge=False)
-
-
-def _outside() -> int:
-    """Return how far up the caller of this package is, for a warning of the function that asks."""
-    frame, level = sys._getframe(1), 1
-    while frame.f_back and frame.f_globals["__name__"].partition(".")[0] == "stickslip":
-        frame, level = frame.f_back, level + 1
-    return level
 
 
 def rows(result: Peaks, dofs: Iterable[str] | str) -> list[Summary]:
