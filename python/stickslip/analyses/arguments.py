@@ -59,8 +59,9 @@ def warn_of_effort(keys: BalanceKeys, model: Model, dofs: tuple[str, ...]) -> No
     if modal and model.contacts and several and keys.fixed_harmonics is None:
         warnings.warn(
             f"observe names modal coordinates, {len(modal)} of them: with harmonics='auto' each "
-            "has to meet the tolerance at every point, which may take a hundred times as long; leave them out "
-            "of the curve, and compute the one point that needs them with a number of harmonics",
+            "has to meet the tolerance at every point, which may take a hundred times as long; "
+            "leave them out of the curve, and compute the one point that needs them with a number "
+            "of harmonics",
             stacklevel=outside(),
         )
 
