@@ -74,6 +74,9 @@ def results():
             BEAM, lambda model: ss.forced_response(model, grid[::4], 3), slip_force=[100.0, 300.0]
         ),
         "turning": ss.campbell(ss.reference.laxalde_blisk(), speed=[100.0, 400.0], orders=[2, 4]),
+        "revolving": ss.speed_response(
+            ss.reference.laxalde_blisk(), [250.0, 300.0, 350.0], dof="tip", harmonics=1
+        ),
         "rest": ss.static_response(ss.Model(BEAM.structure, BEAM.contacts, [LOAD])),
     }
 
