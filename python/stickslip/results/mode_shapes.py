@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Protocol
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Protocol, get_args
 
 import numpy as np
 
+from stickslip.checks import choice
 from stickslip.errors import ModelError
 from stickslip.model import Model
-from stickslip.results.arrays import Complex, Float
+from stickslip.results.arrays import Complex, Float, Measure, amplitude_of, constant
 from stickslip.results.mode_arrays import ModeArrays
 from stickslip.settings.modes import ModeSettings
 
@@ -104,6 +107,31 @@ class ModeShapes:
         series = real + 1j * imaginary
         series[:, 1:] *= amplitude[:, None, None]
         return series
+
+
+@dataclass(frozen=True, eq=False)
+class ModeMotions:
+    """Motions that a nonlinear mode alone gives."""
+
+    mode: Mode
+    omega: Float
+    modal_amplitude: Float
+    error_indicator: Float
+
+    def coefficients(self, dof: str) -> Complex:
+        """Return the harmonics of a displacement, shape (n, H+1) [m]."""
+        return constant(
+            self._shapes.displacement(self.modal_amplitude)[..., self.mode._column(dof)]
+        )
+
+    def amplitude(self, dof: str, measure: Measure = "half_range") -> Float:
+        """Return the amplitude of a displacement, shape (n,) [m]."""
+        choice(measure, "measure", get_args(Measure))
+        return constant(amplitude_of(self.coefficients(dof), measure))
+
+    @cached_property
+    def _shapes(self) -> ModeShapes:
+        return ModeShapes(self.mode)
 
 
 def left_out(

@@ -12,19 +12,17 @@ Solved for Omega it is a curve in closed form, Omega^2 = omega^2 (1 - 2 zeta^2) 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
-from typing import get_args
 
 import numpy as np
 
-from stickslip.checks import choice, unknown
+from stickslip.checks import unknown
 from stickslip.errors import ModelError
-from stickslip.results.arrays import Complex, Float, Measure, amplitude_of, constant
-from stickslip.results.mode_shapes import Mode, ModeShapes, left_out
+from stickslip.results.arrays import Complex, Float, constant
+from stickslip.results.mode_shapes import Mode, ModeMotions, ModeShapes, left_out
 
 
 @dataclass(frozen=True, eq=False)
-class SynthesizedResponse:
+class SynthesizedResponse(ModeMotions):
     """A forced response of a single nonlinear mode.
 
     Attributes
@@ -39,10 +37,6 @@ class SynthesizedResponse:
         holding, in terms of displacements. Above 0.01 compute the response directly.
     """
 
-    mode: Mode
-    omega: Float
-    modal_amplitude: Float
-    error_indicator: Float
     _turn: Complex
 
     def __repr__(self) -> str:
@@ -57,15 +51,6 @@ class SynthesizedResponse:
         series = self._shapes.displacement(self.modal_amplitude)[:, :, column]
         orders = np.arange(series.shape[1])
         return constant(series * self._turn[:, None] ** orders)
-
-    def amplitude(self, dof: str, measure: Measure = "half_range") -> Float:
-        """Return the amplitude of a displacement, shape (n,) [m]."""
-        choice(measure, "measure", get_args(Measure))
-        return constant(amplitude_of(self.coefficients(dof), measure))
-
-    @cached_property
-    def _shapes(self) -> ModeShapes:
-        return ModeShapes(self.mode)
 
 
 @dataclass(frozen=True, eq=False)

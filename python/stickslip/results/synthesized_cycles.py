@@ -9,18 +9,15 @@ feeds per period is what structure and contacts take,
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
-from typing import get_args
 
 import numpy as np
 
-from stickslip.checks import choice
-from stickslip.results.arrays import Bool, Complex, Float, Measure, amplitude_of, constant
-from stickslip.results.mode_shapes import Mode, ModeShapes, left_out
+from stickslip.results.arrays import Bool, Complex, Float, constant
+from stickslip.results.mode_shapes import Mode, ModeMotions, ModeShapes, left_out
 
 
 @dataclass(frozen=True, eq=False)
-class SynthesizedCycles:
+class SynthesizedCycles(ModeMotions):
     """Limit cycles of a single nonlinear mode.
 
     Attributes
@@ -39,32 +36,13 @@ class SynthesizedCycles:
         Above 0.01 compute the limit cycles directly.
     """
 
-    mode: Mode
     ratio: Float
-    omega: Float
-    modal_amplitude: Float
     stable: Bool
-    error_indicator: Float
 
     def __repr__(self) -> str:
         return (
             f"SynthesizedCycles({self.ratio.size} limit cycles of mode {self.mode.settings.mode})"
         )
-
-    def coefficients(self, dof: str) -> Complex:
-        """Return the harmonics of a displacement, shape (n, H+1) [m]."""
-        return constant(
-            self._shapes.displacement(self.modal_amplitude)[:, :, self.mode._column(dof)]
-        )
-
-    def amplitude(self, dof: str, measure: Measure = "half_range") -> Float:
-        """Return the amplitude of a displacement, shape (n,) [m]."""
-        choice(measure, "measure", get_args(Measure))
-        return constant(amplitude_of(self.coefficients(dof), measure))
-
-    @cached_property
-    def _shapes(self) -> ModeShapes:
-        return ModeShapes(self.mode)
 
 
 def synthesized_cycles(mode: Mode, negative: Float, ratio: Float) -> SynthesizedCycles:
@@ -109,5 +87,5 @@ def synthesized_cycles(mode: Mode, negative: Float, ratio: Float) -> Synthesized
     feed = 2.0 * own * omega**2
     balance = moved + along / (feed * amplitude) + shapes.damping_error(amplitude)
     error = moved + balance / np.abs(slope[places])
-    arrays = known, omega, amplitude, slope[places] > 0.0, error
+    arrays = omega, amplitude, error, known, slope[places] > 0.0
     return SynthesizedCycles(mode, *(constant(np.array(one)) for one in arrays))
