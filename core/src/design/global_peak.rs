@@ -4,7 +4,7 @@
 use super::first_look::{Aim, FirstLook, Precision};
 use super::samples::Sample;
 use super::search::{Found, Search};
-use super::upper_branch::nearer;
+use super::upper_branch::{nearer, upper_branch};
 use crate::balance::{
     Evaluation, ForcedBalance, HarmonicChoice, PointStatus, Progress, Resolution, Settings,
     WarmStart,
@@ -255,9 +255,13 @@ impl<'a> PeakSearch<'a> {
         if model.is_monotone() || sure {
             return Ok(Some(found));
         }
-        let Some(largest) = self.upper_branch(model, resolution)? else {
+        let largest =
+            upper_branch(model, self.settings.at(resolution), &self.aim(), self.progress)?;
+        self.points += largest.points;
+        self.memory.profile.add(&largest.profile);
+        if largest.samples.len() < 2 {
             return Ok((!self.is_ended()).then_some(found));
-        };
+        }
         let again = self.search_from(model, resolution, &largest.samples)?;
         Ok(again.map(|again| nearer(found, again, &largest.heights)))
     }
@@ -267,7 +271,7 @@ impl<'a> PeakSearch<'a> {
     }
 
     /// What is looked for.
-    pub(super) fn aim(&self) -> Aim {
+    fn aim(&self) -> Aim {
         Aim {
             groups: self.quest.groups.clone(),
             measure: self.quest.measure,

@@ -2,16 +2,17 @@
 //!
 //! Where laws are not monotone, a point solved by itself may be any of them. Neighbouring samples that no
 //! one smooth curve goes through however short their interval becomes, or a search without an answer, say
-//! that there are several: then the curve is
-//! followed around its folds by arclength, and the search begins again from its largest motions. What is
-//! higher on the curve than what that finds leaves the highest point in doubt.
+//! that there are several: then the curve is followed around its folds by arclength, and the search begins
+//! again from its largest motions. What is higher on the curve than what that finds leaves the highest point
+//! in doubt.
 
-use super::global_peak::PeakSearch;
+use super::first_look::Aim;
 use super::samples::Sample;
 use super::search::{Doubt, Found, Search};
-use crate::balance::{sweep_range, ForcedBalance, PointStatus, Resolution};
+use crate::balance::{sweep_range, ForcedBalance, PointStatus, Progress, Settings};
 use crate::model::Model;
 use crate::solve::norm;
+use crate::timing::Profile;
 use crate::Error;
 
 /// What two neighbours may differ beyond the mean of their slopes, relative to the larger.
@@ -59,48 +60,47 @@ impl Search<'_, '_> {
 
 /// The largest motions of a curve.
 pub(super) struct Uppermost {
-    /// By frequency.
+    /// By frequency; none if the analysis is to end.
     pub(super) samples: Vec<Sample>,
     /// What each group reaches on the curve.
     pub(super) heights: Vec<f64>,
+    /// Points of the curve, …
+    pub(super) points: usize,
+    /// … and work for them.
+    pub(super) profile: Profile,
 }
 
-impl PeakSearch<'_> {
-    /// The largest motions of the curve over the range; nothing if the analysis is to end, or the curve has no two points.
-    pub(super) fn upper_branch(
-        &mut self,
-        model: &Model,
-        resolution: Resolution,
-    ) -> Result<Option<Uppermost>, Error> {
-        let dofs = self.quest.groups.concat();
-        let mut settings = self.settings.at(resolution);
-        settings.tolerance = settings.tolerance.max(STEPS);
-        let balance = ForcedBalance::new(model, settings, &dofs)?.watched(self.progress);
-        let (low, high) = self.quest.span;
-        let curve = sweep_range(balance, low, high)?;
-        self.points += curve.points.len();
-        self.memory.profile.add(&curve.profile);
-        if curve.interrupted {
-            return Ok(None);
-        }
-        let mut balance = ForcedBalance::new(model, settings, &[])?.watched(self.progress);
-        let mut samples = Vec::with_capacity(curve.points.len());
-        let aim = self.aim();
-        let mut search = Search::new(settings.residual, &aim, &mut balance);
-        for point in curve.points.iter().filter(|point| point.is_solved()) {
-            samples.extend(search.sampled(point)?);
-        }
-        let mut first = 0;
-        let heights = self.quest.groups.iter().map(|group| {
-            let own = first..first + group.len();
-            first = own.end;
-            let heights = samples.iter().flat_map(|one| &one.knots[own.clone()]);
-            heights.map(|knot| knot.height).fold(0.0, f64::max)
-        });
-        let heights = heights.collect();
-        let largest = uppermost(samples);
-        Ok((largest.len() > 1).then_some(Uppermost { samples: largest, heights }))
+/// The largest motions of the curve of what is looked for.
+///
+/// # Errors
+/// As for a curve over a range.
+pub(super) fn upper_branch(
+    model: &Model,
+    settings: Settings,
+    aim: &Aim,
+    progress: &Progress<'_>,
+) -> Result<Uppermost, Error> {
+    let dofs = aim.groups.concat();
+    let settings = Settings { tolerance: settings.tolerance.max(STEPS), ..settings };
+    let balance = ForcedBalance::new(model, settings, &dofs)?.watched(progress);
+    let curve = sweep_range(balance, aim.span.0, aim.span.1)?;
+    let mut balance = ForcedBalance::new(model, settings, &[])?.watched(progress);
+    let mut search = Search::new(settings.residual, aim, &mut balance);
+    let mut samples = Vec::with_capacity(curve.points.len());
+    let known = curve.points.iter().filter(|point| !curve.interrupted && point.is_solved());
+    for point in known {
+        samples.extend(search.sampled(point)?);
     }
+    let mut first = 0;
+    let heights = aim.groups.iter().map(|group| {
+        let own = first..first + group.len();
+        first = own.end;
+        let heights = samples.iter().flat_map(|one| &one.knots[own.clone()]);
+        heights.map(|knot| knot.height).fold(0.0, f64::max)
+    });
+    let heights = heights.collect();
+    let (points, profile) = (curve.points.len(), curve.profile);
+    Ok(Uppermost { samples: uppermost(samples), heights, points, profile })
 }
 
 /// Those of the samples along a curve above which the curve does not pass, by frequency.
