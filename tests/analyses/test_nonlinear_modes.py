@@ -63,6 +63,42 @@ def test_two_blades_and_a_wedge():
     assert held.damping_ratio[1] == pytest.approx(0.01547973, rel=1e-3)
 
 
+TABLE = [  # lg a, f [Hz] and ζ of an independent code, whose contact 1 sticks up to -2.5
+    (-2.9, 49.284475, 0.01192553),
+    (-2.8, 48.048205, 0.03795028),
+    (-2.7, 46.700724, 0.05025316),
+    (-2.6, 45.536036, 0.05402437),
+    (-2.5, 44.644986, 0.05236346),
+]
+
+
+@pytest.mark.parametrize(("log", "hertz", "ratio"), TABLE)
+def test_a_wedge_whose_contact_sticks_with_the_traction_of_another_code(log, hertz, ratio):
+    # That code marches from zero traction, one of 256 samples before y1 passes zero upwards. The
+    # traction at rest that leads to zero at this instant makes the same motion.
+    model = wedge()
+    rows = np.vstack([contact.rows(model.structure) for contact in model.contacts])
+    load = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 240.0])
+
+    def computed(residual):
+        mode = ss.nonlinear_modes(
+            model, mode=2, amplitude=[10.0**log], harmonics=5, residual=residual
+        )
+        series = mode.arrays.displacement[0]
+        mean, *_ = np.linalg.lstsq(
+            rows.T, load - model.structure.stiffness @ series[0].real, rcond=None
+        )
+        instant = -0.5 * np.pi - np.angle(series[1, 1]) - 2.0 * np.pi / 256
+        orders = np.arange(1, series.shape[0])
+        swing = (rows[0] @ series[1:].T * np.exp(1j * instant * orders)).real.sum()
+        return mode, mean[0] + 3e5 * swing
+
+    held = brentq(lambda residual: computed(residual)[1], 0.0, 20.0, xtol=1e-6)
+    mode, _ = computed(held)
+    assert mode.omega[0] / (2.0 * np.pi) == pytest.approx(hertz, rel=1e-5)
+    assert mode.damping_ratio[0] == pytest.approx(ratio, rel=2e-4)
+
+
 def test_bounds_over_residual_tractions():
     # -μN and its opposite, and none, of contact 1, which sticks up to lg a = -2.3
     logs = np.array([-2.9, -2.8, -2.7, -2.5, -2.3, -2.0])
