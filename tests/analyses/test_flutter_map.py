@@ -256,3 +256,19 @@ def test_speeds_are_interpolated():
     forces = ss.ModalForces([[1.0, 2j], [3.0, 4j]], speeds=[100.0, 200.0])
     waves = ss.aerodynamic_waves(one_dof(2, GROUND), forces.at_speed(150.0))
     np.testing.assert_allclose(waves.forces.coefficients, [2.0, 3j])
+
+
+def test_waves_of_opposite_sense_share_a_mode_where_they_meet_the_same_sector():
+    disk = one_dof(5, GROUND)
+    given = ss.AerodynamicDamping(ratio=[-0.004, -0.003, -0.002, -0.001, -0.005])
+    found = ss.flutter_map(disk, given, harmonics=5, direct=False)
+    keys = {"amplitude": found.modal_amplitude, "harmonics": 5}
+    modes = [ss.nonlinear_modes(disk, nodal_diameter=d, **keys) for d in range(5)]
+    for d, mode in enumerate(modes):
+        shape = mode.displacement_amplitude("tip")
+        np.testing.assert_allclose(found.arrays.displacement[d, :, 0], shape, rtol=1e-9)
+    coupled = ss.Jenkins("tip", "next.tip", stiffness=2e4, slip_force=5.0)
+    rough = one_dof(5, coupled)
+    apart = ss.flutter_map(rough, given, amplitude=[1e-4, 1e-3], harmonics=5, direct=False)
+    together = ss.flutter_map(disk, given, amplitude=[1e-4, 1e-3], harmonics=5, direct=False)
+    assert together.counters["evaluations"] < apart.counters["evaluations"]

@@ -143,3 +143,21 @@ def test_a_body_that_only_contacts_hold_has_a_mode():
     assert mode.omega == pytest.approx(np.sqrt(stiffness.real), rel=1e-9)
     ratio = stiffness.imag / (2.0 * stiffness.real)
     assert mode.damping_ratio == pytest.approx(ratio, rel=1e-8, abs=1e-12)
+
+
+@pytest.mark.parametrize("diameter", [8, 15])
+def test_automatic_harmonics_pass_the_windings_of_a_branch(diameter):
+    # Where more harmonics were taken in the middle of a winding, the branch turned back or ended.
+    beam = ss.reference.snecma_beam().structure
+    disk = ss.BladedDisk(
+        ss.Structure(beam.mass, beam.stiffness, ss.Rayleigh(mass=0.5), beam.dofs),
+        36,
+        [ss.Coupling(beam.dofs[1], stiffness=1e4)],
+        [ss.Jenkins(beam.dofs[0], stiffness=2.4e7, slip_force=246.0)],
+        engine_order=1,
+    )
+    amplitudes = np.geomspace(3.5e-4, 7.3e-2, 41)
+    mode = ss.nonlinear_modes(disk, nodal_diameter=diameter, amplitude=amplitudes)
+    assert "mode-not-reached" not in {one.code for one in mode.diagnostics}
+    assert np.isfinite(mode.omega).all()
+    assert mode.arrays.residual.max() < 1e-6

@@ -54,15 +54,17 @@ pub(super) struct Walk<'a> {
 }
 
 impl<'a> Walk<'a> {
+    /// A branch whose automatic harmonics are never fewer than `lowest`.
     pub(super) fn new(
         model: &'a Model,
         settings: &'a ModeSettings,
         residuals: Vec<Residual>,
         progress: &'a Progress<'a>,
+        lowest: usize,
     ) -> Result<Self, Error> {
         let kept = match settings.harmonics {
             HarmonicChoice::Fixed(highest) => highest,
-            HarmonicChoice::Auto => fewest(settings),
+            HarmonicChoice::Auto => fewest(settings).max(lowest),
         };
         Error::check_order("harmonics", kept, crate::balance::HIGHEST_ORDER)?;
         residuals.iter().try_for_each(|residual| residual.check())?;
@@ -87,7 +89,7 @@ impl<'a> Walk<'a> {
         }
         Ok(Self {
             settings,
-            truncation: Truncation::new(equations),
+            truncation: Truncation::new(equations, lowest),
             linear,
             points: Vec::new(),
             turns: Vec::new(),
@@ -331,6 +333,12 @@ impl<'a> Walk<'a> {
         }
         self.profile.recovery += start.elapsed();
         self.points.push(point);
+    }
+
+    /// Largest amplitude of a point that was found.
+    pub(super) fn reached(&self) -> f64 {
+        let found = self.points.iter().filter(|point| point.response.omega.is_finite());
+        found.map(|point| point.amplitude).fold(0.0, f64::max)
     }
 
     /// Says of amplitudes that were not reached that they were not.

@@ -33,6 +33,8 @@ pub(super) struct Truncation<'a> {
     /// Whether harmonics have been given up, and those that were asked for after that: so many stay.
     eased: bool,
     lowest: usize,
+    /// Highest harmonic that any point has had.
+    pub(super) highest: usize,
     /// Work in harmonics that have been left.
     profile: Profile,
     estimate: Duration,
@@ -72,13 +74,16 @@ fn above(order: usize) -> usize {
 }
 
 impl<'a> Truncation<'a> {
-    pub(super) fn new(equations: ModeEquations<'a>) -> Self {
+    /// The harmonics of these equations, and never fewer than `lowest`.
+    pub(super) fn new(equations: ModeEquations<'a>, lowest: usize) -> Self {
+        let highest = equations.harmonics().highest();
         Self {
             equations,
             finer: None,
             generous: 0,
             eased: false,
-            lowest: 0,
+            lowest,
+            highest,
             profile: Profile::default(),
             estimate: Duration::ZERO,
         }
@@ -109,6 +114,7 @@ impl<'a> Truncation<'a> {
                 return (z, step);
             };
             self.generous = 0;
+            self.highest = self.highest.max(equations.harmonics().highest());
             if self.eased {
                 self.lowest = equations.harmonics().highest();
             }

@@ -5,6 +5,7 @@
 
 use super::held_pool::is_low;
 use super::mode_branch::Walk;
+use super::mode_harmonics::fewest;
 use super::mode_settings::{Corner, ModeEnd, ModeMethod, ModeSettings, NonlinearMode};
 use super::quasi_static::quasi_static_mode;
 use crate::balance::{HarmonicChoice, Progress};
@@ -47,19 +48,38 @@ pub fn nonlinear_mode(
             *given
         }
     };
-    let residuals = model.laws().iter().map(AsRef::as_ref).zip(&residuals).map(residual).collect();
-    let mut walk = Walk::new(made.as_ref().unwrap_or(model), settings, residuals, progress)?;
-    let (low, _) = walk.bounds();
-    let end = match walk.begin(low) {
-        Some(z) => walk.follow(z),
-        None if walk.equations().is_interrupted() => ModeEnd::Interrupted,
-        None => ModeEnd::Stalled,
-    };
+    let residuals: Vec<Residual> =
+        model.laws().iter().map(AsRef::as_ref).zip(&residuals).map(residual).collect();
+    let model = made.as_ref().unwrap_or(model);
+    let along = |lowest| followed(model, settings, residuals.clone(), progress, lowest);
+    let (mut walk, mut end) = along(0)?;
+    let (mut lowest, mut left) = (0, Profile::default());
+    // Where a branch winds, a change of harmonics on the way can turn it back or end it. Then it is
+    // followed once more, from its start in as many as it has come to.
+    while matches!(end, ModeEnd::Returned | ModeEnd::Stalled | ModeEnd::Evaluations)
+        && settings.harmonics == HarmonicChoice::Auto
+        && walk.truncation.highest > lowest.max(fewest(settings))
+    {
+        lowest = walk.truncation.highest;
+        let (again, its_end) = along(lowest)?;
+        let farther = again.reached() > walk.reached();
+        let other = if farther { std::mem::replace(&mut walk, again) } else { again };
+        let effort = other.truncation.effort();
+        left.add(&effort);
+        left.estimate += effort.estimate;
+        if farther || its_end == ModeEnd::Interrupted {
+            end = its_end;
+        } else {
+            break;
+        }
+    }
     let end_amplitude = walk.last.map_or(f64::NAN, f64::exp);
     walk.fill_up();
     let half_wave = walk.equations().harmonics().half_wave();
-    let part = walk.truncation.effort();
-    let mut profile = Profile { total: start.elapsed(), estimate: part.estimate, ..walk.profile };
+    let mut part = walk.truncation.effort();
+    part.add(&left);
+    let estimate = part.estimate + left.estimate;
+    let mut profile = Profile { total: start.elapsed(), estimate, ..walk.profile };
     profile.add(&part);
     Ok(NonlinearMode {
         points: walk.points,
@@ -71,6 +91,24 @@ pub fn nonlinear_mode(
         end_amplitude,
         profile,
     })
+}
+
+/// A branch from its start to its end, in no fewer harmonics than `lowest` where they are automatic.
+fn followed<'a>(
+    model: &'a Model,
+    settings: &'a ModeSettings,
+    residuals: Vec<Residual>,
+    progress: &'a Progress<'a>,
+    lowest: usize,
+) -> Result<(Walk<'a>, ModeEnd), Error> {
+    let mut walk = Walk::new(model, settings, residuals, progress, lowest)?;
+    let (low, _) = walk.bounds();
+    let end = match walk.begin(low) {
+        Some(z) => walk.follow(z),
+        None if walk.equations().is_interrupted() => ModeEnd::Interrupted,
+        None => ModeEnd::Stalled,
+    };
+    Ok((walk, end))
 }
 
 /// The forces that contacts are assumed to hold, law by law.
@@ -150,7 +188,7 @@ fn at_rest<'a>(
     residuals: Vec<Residual>,
     progress: &'a Progress<'a>,
 ) -> Result<Option<Walk<'a>>, Error> {
-    let mut walk = Walk::new(model, settings, residuals, progress)?;
+    let mut walk = Walk::new(model, settings, residuals, progress, 0)?;
     if walk.equations().harmonics().half_wave() {
         return Ok(None);
     }

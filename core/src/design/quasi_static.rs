@@ -40,7 +40,7 @@ pub(super) fn quasi_static_mode(
 ) -> Result<NonlinearMode, Error> {
     let start = Instant::now();
     let residuals = vec![settings.residual; model.laws().len()];
-    let mut walk = Walk::new(model, settings, residuals, progress)?;
+    let mut walk = Walk::new(model, settings, residuals, progress, 0)?;
     let amplitudes = wanted(&settings.amplitudes);
     let linear = [walk.linear.omega, walk.linear.damping / (2.0 * walk.linear.omega)];
     let shape: Vec<f64> = walk.linear.shape.iter().map(|s| s.re).collect();

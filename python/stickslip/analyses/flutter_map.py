@@ -94,19 +94,18 @@ def flutter_map(
     n = disk.sectors
     rows: list[_Wave] = []
     cycles: list[_Cycle] = []
-    evaluations = 0
+    modes = _Modes(disk, settings)
     interrupted = False
     with Run("flutter map", progress) as run:
         try:
             with run.at_once():
                 for diameter in range(n):
                     part = share(run, diameter / n, (diameter + 1) / n)
-                    wave = _Follower(waves, diameter, settings, part)
+                    wave = _Follower(waves, diameter, modes, part)
                     row = wave.at(amplitudes)
                     found = _compared(waves, settings, wave, wave.cycles(row))
                     rows.append(row)
                     cycles.extend(found)
-                    evaluations += wave.evaluations
         except KeyboardInterrupt:
             interrupted = True
         arrays = _arrays(waves, amplitudes, rows, cycles)
@@ -130,7 +129,7 @@ def flutter_map(
             arrays=arrays,
             interrupted=interrupted,
             timings={},
-            counters={"evaluations": evaluations},
+            counters={"evaluations": modes.evaluations},
             diagnostics=notes,
         )
         return run.ended(result, f"{len(rows)} of {n} waves")
@@ -145,6 +144,7 @@ class _Wave(NamedTuple):
     flow_ratio: NDArray[np.float64]
     participation: NDArray[np.float64]
     displacement: NDArray[np.float64]
+    harmonics: NDArray[np.int64]
 
     @property
     def ratio(self) -> NDArray[np.float64]:
@@ -183,40 +183,60 @@ class _Cycle(NamedTuple):
     error: float = np.nan
 
 
+class _Modes:
+    """The nonlinear modes of all waves of a disk without its flow."""
+
+    def __init__(self, disk: BladedDisk, settings: FlutterKeys) -> None:
+        self.disk, self.settings = disk, settings
+        self.evaluations = 0
+        self.known: dict[object, NonlinearModes] = {}
+        blocks = disk.matrices.mass, disk.matrices.damping, disk.matrices.stiffness
+        alone = not any(disk.contact_rows(contact)[1].any() for contact in disk.contacts)
+        self.mirrored = alone and all(np.array_equal(one.next, one.next.T) for one in blocks)
+        """Whether waves of opposite sense meet the same sector."""
+
+    def at(
+        self, diameter: int, amplitudes: NDArray[np.float64], harmonics: int | None = None
+    ) -> NonlinearModes:
+        """Return the mode of a wave at amplitudes; not-a-number where it was not reached."""
+        keys = self.settings
+        if self.mirrored:
+            diameter = min(diameter, self.disk.sectors - diameter)
+        asked = diameter, amplitudes.tobytes(), harmonics
+        if asked not in self.known:
+            found = nonlinear_modes(
+                self.disk,
+                amplitude=amplitudes.tolist(),
+                nodal_diameter=diameter,
+                mode=keys.mode,
+                harmonics=harmonics or keys.harmonics,
+                tolerance=keys.tolerance,
+                residual=keys.residual,
+                max_harmonics=keys.max_harmonics,
+                max_iterations=keys.max_iterations,
+            )
+            self.evaluations += int(found.counters.get("evaluations", 0))
+            self.known[asked] = found
+        return self.known[asked]
+
+
 class _Follower:
     """The nonlinear mode of one wave of a disk in a flow."""
 
     def __init__(
-        self,
-        waves: AerodynamicWaves,
-        diameter: int,
-        settings: FlutterKeys,
-        progress: Progress,
+        self, waves: AerodynamicWaves, diameter: int, modes: _Modes, progress: Progress
     ) -> None:
         self.disk, self.forces, self.diameter = waves.disk, waves.forces, diameter
         self.rest = float(waves.omega[diameter])
-        self.settings, self.progress = settings, progress
-        self.evaluations = 0
+        self.modes, self.progress = modes, progress
         self.harmonics = 1
         """Highest harmonic of the mode at the amplitudes it was computed at last."""
 
-    def at(self, amplitudes: NDArray[np.float64]) -> _Wave:
+    def at(self, amplitudes: NDArray[np.float64], harmonics: int | None = None) -> _Wave:
         """Return the wave at amplitudes; not-a-number where its mode was not reached."""
-        keys = self.settings
-        mode: NonlinearModes = nonlinear_modes(
-            self.disk,
-            amplitude=amplitudes.tolist(),
-            nodal_diameter=self.diameter,
-            mode=keys.mode,
-            harmonics=keys.harmonics,
-            tolerance=keys.tolerance,
-            residual=keys.residual,
-            max_harmonics=keys.max_harmonics,
-            max_iterations=keys.max_iterations,
-        )
+        mode = self.modes.at(self.diameter, amplitudes, harmonics)
         if self.progress is not None:
             self.progress(1.0)
-        self.evaluations += int(mode.counters.get("evaluations", 0))
         self.harmonics = int(mode.harmonics.max())
         return self._in_flow(mode)
 
@@ -244,7 +264,7 @@ class _Follower:
             share = first / (square * inertia)
         sizes = [mode.displacement_amplitude(dof) for dof in self.disk.structure.dofs]
         amplitude = np.asarray(mode.amplitude)
-        return _Wave(amplitude, omega, own, flow, share, np.stack(sizes, axis=1))
+        return _Wave(amplitude, omega, own, flow, share, np.stack(sizes, axis=1), mode.harmonics)
 
     def _fed(self, order: int, place: int) -> complex:
         """Return L of a harmonic, its imaginary part as a damping does the work of a period.
@@ -267,7 +287,8 @@ class _Follower:
             around = guesses[wide, np.newaxis] * (1.0 + _CLOSE) ** np.arange(-1.0, 2.0)
             # At a kink of the damping guesses creep; the middle halves the way.
             middle = np.sqrt(low[wide] * high[wide])
-            row = row.with_amplitudes(self.at(np.unique(np.append(around, middle))))
+            kept = row.harmonics[[after[wide] - 1, after[wide]]].max()
+            row = row.with_amplitudes(self.at(np.unique(np.append(around, middle)), int(kept)))
         found = row.undamped()
         if not found.size:
             return []
