@@ -79,6 +79,8 @@ bench: $(VENV)/.developed
 	$(BIN)/python benchmarks/mistuning_study.py
 	$(BIN)/python benchmarks/contacts.py
 	$(BIN)/python benchmarks/interfaces.py
+	$(BIN)/python benchmarks/joints.py
+	$(BIN)/python benchmarks/flutter.py
 	$(BIN)/python benchmarks/table_4_1_blade.py
 
 peers: $(VENV)/.developed

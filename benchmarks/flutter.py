@@ -4,9 +4,9 @@ Usage::
 
     python benchmarks/flutter.py
 
-Sectors of one degree of freedom, and of the three of the SNECMA beam, with a damper to the ground. The
-flow destabilises two thirds of the travelling waves. Processor times, with automatic harmonics and
-with 5; the error is that of the amplitudes of limit cycles against the whole equations.
+Sectors of one degree of freedom, and of the three of the SNECMA beam, with a damper to the ground.
+The flow destabilises two thirds of the travelling waves. Processor times, with automatic harmonics
+and with 5; the error is that of the amplitudes of limit cycles against the whole equations.
 """
 
 from __future__ import annotations
