@@ -1,0 +1,158 @@
+"""Surfaces and sets of the decks of finite-element programs."""
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+
+DECK = """** two bricks, one above the other, and a shell on top
+*NODE, NSET=ALL
+ 1, 0,0,0
+ 2, 2,0,0
+ 3, 2,3,0
+ 4, 0,3,0
+ 5, 0,0,1
+ 6, 2,0,1
+ 7, 2,3,1
+ 8, 0,3,1
+ 21, 0,0,1
+ 22, 2,0,1
+ 23, 2,3,1
+ 24, 0,3,1
+ 31, 0,0,2
+ 32, 2,0,2
+ 33, 2,3,2
+ 34, 0,3,2
+*ELEMENT, TYPE=C3D8, ELSET=LOW
+10, 1,2,3,4,5,
+6,7,8
+*Element, type=C3D8R, elset=High
+20, 21,22,23,24,31,32,33,34
+*ELEMENT, TYPE=SPRINGA, ELSET=SPRINGS
+30, 1, 2
+*NSET, NSET=FEET, GENERATE
+1, 4
+*NSET, NSET=ENDS
+FEET, 31, 32, 33, 34
+*SURFACE, NAME=SEAT
+LOW, S2
+*SURFACE, NAME=PAD, TYPE=ELEMENT
+20, S1
+*SURFACE, NAME=POINTS, TYPE=NODE
+31, 32, 33, 34
+*STEP
+*END STEP
+"""
+
+
+def deck(folder, text=DECK):
+    path = folder / "joint.inp"
+    path.write_text(text)
+    return path
+
+
+def test_a_deck_gives_surfaces_and_sets(tmp_path):
+    mesh = ss.read_mesh(deck(tmp_path))
+    interface = ss.ContactInterface.from_surfaces(mesh, "PAD", mesh, "SEAT")
+    assert dict(zip(interface.first.tolist(), interface.other.tolist(), strict=True)) == {
+        21: 5,
+        22: 6,
+        23: 7,
+        24: 8,
+    }
+    assert interface.area == pytest.approx(6.0)
+    np.testing.assert_allclose(interface.normals, np.tile([0, 0, -1.0], (4, 1)), atol=1e-15)
+    assert interface.dofs[:3] == ("21.1", "21.2", "21.3")
+    for name, height, normal in (("FEET", 0.0, -1.0), ("POINTS", 2.0, 1.0), ("SEAT", 1.0, 1.0)):
+        surface = mesh.surface(name)
+        assert surface.area == pytest.approx(6.0)
+        assert (surface.points[:, 2] == height).all()
+        np.testing.assert_allclose(surface.normals[:, 2], normal)
+    assert mesh.surface("ENDS").area == pytest.approx(12.0)
+    # every node of both bricks: their whole outside, the two faces that touch too
+    assert mesh.surface("ALL").area == pytest.approx(2 * 22.0)
+
+
+def test_all_surfaces_of_elements_close():
+    """The area vectors of the outside of a body add up to nothing, for every kind of element."""
+    corners = np.array([[0, 0, 0], [2, 0, 0], [2, 3, 0], [0, 3, 0]], dtype=float)
+    brick = np.vstack([corners, corners * 0.8 + [0.1, 0.2, 1.5]])
+    for kind, nodes, faces in (
+        ("hexahedron", range(8), 6),
+        ("wedge", (0, 1, 3, 4, 5, 7), 5),
+        ("tetra", (0, 1, 3, 4), 4),
+    ):
+        own = brick[list(nodes)]
+        # numbered in a mirrored way too: normals point outward all the same
+        for points in (own, own * [1.0, 1.0, -1.0]):
+            cells = ((kind, np.arange(len(own))[None]),)
+            mesh = ss.Mesh(points, cells)
+            surface = mesh.surface(np.ones(len(own), dtype=bool))
+            assert sum(map(len, surface.faces)) == faces
+            total, volume = np.zeros(3), 0.0
+            for _, _, vectors in surface._integrals:
+                total += vectors.sum(axis=(0, 1))
+            for face in surface.faces:
+                for one in face:
+                    a, b, c = (
+                        surface.points[one[0]],
+                        surface.points[one[1]],
+                        surface.points[one[-1]],
+                    )
+                    volume += np.cross(b - a, c - a) @ (
+                        surface.points[one].mean(axis=0) - points.mean(axis=0)
+                    )
+            np.testing.assert_allclose(total, 0.0, atol=1e-12)
+            assert volume > 0.0
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ("LOW, S2", "LOV, S2", "unknown ELSET 'LOV'"),
+        ("LOW, S2", "LOW, S7", "hexahedron has no face 'S7'"),
+        ("LOW, S2", "SPRINGS, S1", "unknown ELSET 'SPRINGS'"),
+        ("LOW, S2", "30, S1", "element 30 has no faces here"),
+        ("LOW, S2", "99, S1", "element 99 is not there"),
+        ("FEET, 31", "FEAT, 31", "unknown set 'FEAT'"),
+        ("FEET, 31", "FEET, 77", "node set ENDS: there is no node 77"),
+        ("6,7,8", "6,7,9", "element 10: there is no node 9"),
+        ("6,7,8", "6,7", "8 numbers; 9 each"),
+        (" 8, 0,3,1", " 8, 0,3,nan", "a coordinate is not finite"),
+        (" 8, 0,3,1", " 8, 0,3,one", "could not convert"),
+        ("*NODE, NSET=ALL", "*NODE, SYSTEM=C", "rectangular"),
+        ("*STEP", "*PART, NAME=A", "without parts and instances"),
+        ("*STEP", "*NSET", "NSET= is missing"),
+        ("*STEP", "*INCLUDE, INPUT=joint.inp", "include each other"),
+    ],
+)
+def test_a_damaged_deck_is_refused_in_one_line(tmp_path, old, new, says):
+    path = deck(tmp_path, DECK.replace(old, new))
+    with pytest.raises(ss.ModelError, match=r"joint\.inp") as error:
+        ss.read_mesh(path)
+    assert says in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+def test_what_does_not_exist_is_named(tmp_path):
+    mesh = ss.read_mesh(deck(tmp_path))
+    pair = ss.ContactInterface.from_surfaces
+    for call, says in (
+        (lambda: mesh.surface("SEATS"), "did you mean 'SEAT'"),
+        (lambda: mesh.surface(np.array([5, 6])), "True and False for the 16 nodes"),
+        (lambda: mesh.surface(np.zeros(16, dtype=bool)), "it has no faces"),
+        (lambda: pair(mesh, "PAD", mesh, "FEET", tolerance=0.5), "the nearest are 1 m apart"),
+        (lambda: pair(mesh, "PAD", mesh, "SEAT", tolerance=0.0), "must be positive"),
+        (lambda: pair(mesh, "PAD", mesh, "SEAT", tolerance="1"), "not a number"),
+        (lambda: pair(mesh, "PAD", mesh, "PAD"), "paired with itself"),
+        (lambda: pair(mesh, "PAD", mesh, "PAD", names=("a", "b")), "do not face each other"),
+        (lambda: pair(mesh, "PAD", mesh), "other_mesh and other_surface"),
+        (lambda: pair(mesh, "PAD", names=("a",)), "give two"),
+        (lambda: pair("mesh", "PAD"), "ss.read_mesh"),
+        (lambda: ss.read_mesh(tmp_path / "none.inp"), "no such file"),
+        (lambda: ss.read_mesh(tmp_path / "joint.obj"), "no such file"),
+    ):
+        with pytest.raises(ss.ModelError) as error:
+            call()
+        assert says in str(error.value)
+        assert "\n" not in str(error.value)
