@@ -24,8 +24,9 @@ fn along<R>(
     if !view.iter().all(|amplitude| amplitude.is_finite()) {
         return Err(PyValueError::new_err("displacement: every amplitude must be finite"));
     }
-    let half_wave =
-        residual.is_symmetric() && (0..points).all(|n| is_half_wave(orders, |k| view[[n, k]]));
+    // A normal load that varies does not change its sign with the motion.
+    let odd = model.laws()[contact].is_odd() && residual.is_symmetric();
+    let half_wave = odd && (0..points).all(|n| is_half_wave(orders, |k| view[[n, k]]));
     let sample_table = SampleTable::new(Harmonics::new(orders - 1, half_wave));
     let coefficients: Vec<f64> =
         (0..points).flat_map(|n| series(sample_table.harmonics(), |k| view[[n, k]])).collect();

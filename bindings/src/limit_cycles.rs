@@ -126,7 +126,8 @@ pub fn period_multipliers<'py>(
 ) -> PyResult<Option<(Bound<'py, PyArray1<Complex64>>, f64)>> {
     let view = displacement.as_array();
     let (points, orders) = (view.nrows(), view.ncols());
-    let half_wave = (0..points).all(|n| is_half_wave(orders, |k| view[[n, k]]));
+    let odd = problem.model.laws().iter().all(|law| law.is_odd());
+    let half_wave = odd && (0..points).all(|n| is_half_wave(orders, |k| view[[n, k]]));
     let harmonics = Harmonics::new(orders - 1, half_wave);
     let values: Vec<f64> = (0..points).flat_map(|n| series(&harmonics, |k| view[[n, k]])).collect();
     let motion = Unknowns::new(harmonics, values);

@@ -119,3 +119,22 @@ def test_two_directions_in_runge_kutta_steps():
     assert np.linalg.norm(start.contact_force) <= 0.4 * 80.0
     with pytest.raises(ss.ModelError, match="two tractions per node; give all forces"):
         ss.State(model, contact_force={"coulomb": 1.0})
+
+
+def test_forces_of_a_preloaded_contact_that_sticks():
+    # Its motion has odd harmonics alone, its normal force has not.
+    structure = ss.Structure(np.eye(1), np.eye(1) * 2e4, np.eye(1) * 5.0, ["q"])
+    pad = ss.Coulomb(
+        [{"q": 0.7}, "q"],
+        normal=[0, 1],
+        friction=1.01,
+        tangential_stiffness=28650.0,
+        normal_stiffness=1274.0,
+        preload=157.0,
+    )
+    model = ss.Model(structure, [pad], [ss.Force("q", 52.0)])
+    balance, exact = ss.forced_response(model, [150.0], 9), ss.exact_response(model, [150.0])
+    force = exact.contact_force(0, 0, 64)
+    assert force[:, 1].min() > 150.0
+    np.testing.assert_allclose(balance.contact_force(0, 0, 64), force, atol=1e-9)
+    assert not balance.contact_states(0, 0).direction.any()

@@ -214,11 +214,8 @@ pub(super) fn errors(
 fn keeps_state(extended: &Condensed<'_>, contact: usize, x: &[f64]) -> bool {
     let (law, motion) = (&extended.model.laws()[contact], extended.motion(contact, x));
     let active = extended.loads[contact].active;
-    if active && law.stuck_load(motion.residual, 0.0, 0.0).is_some() {
-        let (low, high) = Samples::of(motion, INSTANTS).range();
-        if law.stuck_load(motion.residual, low, high).is_none() {
-            return true;
-        }
+    if active && law.yields(motion, &Samples::of(motion, INSTANTS)) {
+        return true;
     }
     let mut load = SlipLoad::default();
     law.slip_load(motion, false, &mut load);

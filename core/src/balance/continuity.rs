@@ -17,13 +17,15 @@ use super::solution::{Point, PointStatus};
 use super::tangent::{distance, Tangent, UNEXPLAINED};
 use super::unknowns::Unknowns;
 use crate::contact::Residual;
-use crate::fourier::SampleTable;
+use crate::fourier::{Harmonics, SampleTable};
 use crate::solve::{between, newton, Advance, Continuation, NewtonSettings, Outcome, System as _};
 use crate::timing::Profile;
 use crate::Error;
 
 /// Distance, relative to the motion, below which nothing has to be explained.
 const CLOSE: f64 = 1e-5;
+/// Part of the way by which harmonics that are left out may move its ends.
+const MOVED: f64 = 0.1;
 /// A piece of the way that is no longer than this part of it may be left.
 const PIECE: f64 = 0.02;
 /// Points that may divide the way.
@@ -84,44 +86,86 @@ impl ForcedBalance<'_> {
         let solved = point.is_solved();
         let finer = last.resolution().or_finer(point.resolution());
         let resolution = if solved { finer } else { last.resolution() };
-        let table = self.table(resolution.harmonics);
-        let model = self.evaluated(resolution.samples)?;
-        let residual = self.settings.residual;
-        let Some(known) = last.unknowns() else { return Ok(Reached::Lost) };
-        let mut from = known.recast(table.harmonics());
-        from.push(last.omega);
-        let to = point.unknowns().filter(|_| solved).map(|found| {
-            let mut to = found.recast(table.harmonics());
-            to.push(point.omega);
-            to
-        });
-        let mut way =
-            Way { model: &model, table: &table, residual, resolution, profile: Profile::default() };
-        if let Some(to) = &to {
-            if distance(&from, to) < CLOSE {
+        let (Some(known), found) = (last.unknowns(), point.unknowns().filter(|_| solved)) else {
+            return Ok(Reached::Lost);
+        };
+        let (from, to) = ((known, last.omega), found.map(|found| (found, point.omega)));
+        if let (Some(coarse), Some(to)) = (self.coarser(resolution), to) {
+            if let Told::Whole = self.told(coarse, from, to)? {
                 return Ok(Reached::Same);
             }
-            let before = self.tangent.take().filter(|known| known.is(resolution, &from));
-            let before = before.or_else(|| way.tangent(&from));
-            let after = way.tangent(to);
-            self.tangent.clone_from(&after);
-            if let (Some(before), Some(after)) = (before, after) {
-                match way.explained(before, after) {
-                    Ok(()) => {
-                        self.add_profile(&way.profile);
-                        return Ok(Reached::Same);
-                    }
-                    Err(reached) => from = reached,
-                }
+        }
+        let table = self.table(resolution.harmonics);
+        let mut start = at(table.harmonics(), from);
+        if let Some(to) = to {
+            match self.told(resolution, from, to)? {
+                Told::Whole => return Ok(Reached::Same),
+                Told::UpTo(reached) => start = reached,
+                Told::Nothing => {}
             }
         }
-        self.add_profile(&way.profile);
+        let to = to.map(|to| at(table.harmonics(), to));
+        let model = self.evaluated(resolution.samples)?;
         let ask = self.interruption();
-        let mut curve = ForcedCurve::new(model, &table, residual, &ask);
-        let reached = followed(&mut curve, &from, to.as_deref(), point.omega);
+        let mut curve = ForcedCurve::new(model, &table, self.settings.residual, &ask);
+        let reached = followed(&mut curve, &start, to.as_deref(), point.omega);
         self.add_profile(&curve.profile);
         Ok(reached)
     }
+
+    /// How much of the way between two solutions tangents tell. In fewer harmonics than those that
+    /// were solved for it has ends of its own, which have to be close.
+    fn told(
+        &mut self,
+        resolution: Resolution,
+        from: (&Unknowns, f64),
+        to: (&Unknowns, f64),
+    ) -> Result<Told, Error> {
+        let table = self.table(resolution.harmonics);
+        let model = self.evaluated(resolution.samples)?;
+        let residual = self.settings.residual;
+        let mut way =
+            Way { model: &model, table: &table, residual, resolution, profile: Profile::default() };
+        let known = self.tangent.take().filter(|known| known.is(resolution, from.1));
+        let fewer = |of: &Unknowns| of.harmonics.highest() > resolution.harmonics;
+        let cut = fewer(from.0) || fewer(to.0);
+        let (from, to) = (at(table.harmonics(), from), at(table.harmonics(), to));
+        let length = distance(&from, &to);
+        if length < CLOSE {
+            return Ok(Told::Whole);
+        }
+        let before = known.or_else(|| way.end(&from, cut, length));
+        let after = before.as_ref().and_then(|_| way.end(&to, cut, length));
+        let told = match (before, after) {
+            (Some(before), Some(after)) => {
+                let kept = after.clone();
+                match way.explained(before, after) {
+                    Ok(()) => {
+                        self.tangent = Some(kept);
+                        Told::Whole
+                    }
+                    Err(reached) => Told::UpTo(reached),
+                }
+            }
+            _ => Told::Nothing,
+        };
+        self.add_profile(&way.profile);
+        Ok(told)
+    }
+}
+
+/// What tangents tell of the way between two solutions.
+enum Told {
+    Whole,
+    UpTo(Vec<f64>),
+    Nothing,
+}
+
+/// A solution in other harmonics, with its frequency behind it.
+fn at(harmonics: &Harmonics, (unknowns, omega): (&Unknowns, f64)) -> Vec<f64> {
+    let mut z = unknowns.recast(harmonics);
+    z.push(omega);
+    z
 }
 
 /// Whether the extrapolation that led to a new point has told the way to it.
@@ -135,11 +179,7 @@ fn foretold(last: &Point, guess: Option<&Unknowns>, point: &Point) -> bool {
         &to.harmonics
     };
     let [guess, from, to] =
-        [(guess, point.omega), (from, last.omega), (to, point.omega)].map(|(unknowns, omega)| {
-            let mut z = unknowns.recast(harmonics);
-            z.push(omega);
-            z
-        });
+        [(guess, point.omega), (from, last.omega), (to, point.omega)].map(|one| at(harmonics, one));
     distance(&to, &guess) < UNEXPLAINED * distance(&to, &from)
 }
 
@@ -159,36 +199,35 @@ impl Way<'_> {
         Some(equations)
     }
 
-    /// The tangent at a point.
-    fn tangent(&mut self, z: &[f64]) -> Option<Tangent> {
+    /// The tangent at an end of the way; with harmonics cut off at the solution close to it.
+    fn end(&mut self, z: &[f64], cut: bool, length: f64) -> Option<Tangent> {
         let (omega, u) = z.split_last()?;
-        let mut equations = self.equations(*omega)?;
-        equations.residual(u, &mut vec![0.0; u.len()]);
-        let rate = rate(&mut equations);
+        let end = self.tangent(*omega, u.to_vec(), cut)?;
+        (!cut || distance(z, &end.z) < MOVED * length).then_some(end)
+    }
+
+    /// The tangent at a motion, or at the solution that it leads to.
+    fn tangent(&mut self, omega: f64, mut z: Vec<f64>, solve: bool) -> Option<Tangent> {
+        let mut equations = self.equations(omega)?;
+        let solved =
+            !solve || newton(&mut equations, &mut z, BETWEEN).outcome == Outcome::Converged;
+        let rate = solved.then(|| {
+            equations.residual(&z, &mut vec![0.0; z.len()]);
+            rate(&mut equations)
+        });
         let profile = equations.profile;
         self.profile.add(&profile);
-        Some(Tangent { resolution: self.resolution, z: z.to_vec(), rate: rate? })
+        z.push(omega);
+        Some(Tangent { resolution: self.resolution, z, rate: rate?? })
     }
 
     /// The point between two others where their tangents meet.
     fn between(&mut self, from: &Tangent, to: &Tangent) -> Option<Tangent> {
         let (share, step) = (from.meets(to), to.omega() - from.omega());
         let omega = from.omega() + share * step;
-        let mut equations = self.equations(omega)?;
         let ahead = from.ahead(share * step).zip(to.ahead((share - 1.0) * step));
-        let mut z: Vec<f64> = ahead.map(|(a, b)| share * b + (1.0 - share) * a).collect();
-        let report = newton(&mut equations, &mut z, BETWEEN);
-        let solved = report.outcome == Outcome::Converged;
-        let rate = if solved {
-            equations.residual(&z, &mut vec![0.0; z.len()]);
-            rate(&mut equations)
-        } else {
-            None
-        };
-        let profile = equations.profile;
-        self.profile.add(&profile);
-        z.push(omega);
-        Some(Tangent { resolution: self.resolution, z, rate: rate? })
+        let z = ahead.map(|(a, b)| share * b + (1.0 - share) * a).collect();
+        self.tangent(omega, z, true)
     }
 
     /// Whether tangents explain the way between two points, divided where they do not; if not, how

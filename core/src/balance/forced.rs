@@ -206,6 +206,8 @@ impl<'a> ForcedBalance<'a> {
         omega: f64,
         start: Option<&Unknowns>,
     ) -> Result<Point, Error> {
+        let rough = start.map(|start| self.rough_start(resolution, omega, start)).transpose()?;
+        let start = rough.as_ref().and_then(Option::as_ref).or(start);
         let table = self.table(resolution.harmonics);
         let model = self.evaluated(resolution.samples)?;
         let interrupted = self.interruption();

@@ -30,6 +30,7 @@ mod resolution_control;
 mod ring_answers;
 mod ring_newton;
 mod ring_series;
+mod rough_start;
 mod sampling;
 mod scale;
 mod settings;

@@ -18,8 +18,8 @@ pub(super) struct Tangent {
 }
 
 impl Tangent {
-    pub(super) fn is(&self, resolution: Resolution, z: &[f64]) -> bool {
-        self.resolution == resolution && self.z == z
+    pub(super) fn is(&self, resolution: Resolution, omega: f64) -> bool {
+        self.resolution == resolution && self.omega().total_cmp(&omega).is_eq()
     }
 
     pub(super) fn omega(&self) -> f64 {

@@ -6,6 +6,7 @@
 use super::stick_slip::crossing;
 use super::{Coulomb, Motion};
 use crate::fourier::{Harmonics, SampleTable, TurningPoint};
+use std::cell::OnceCell;
 
 /// Pull and normal force of a periodic motion.
 pub(super) struct Drive<'a> {
@@ -19,13 +20,21 @@ pub(super) struct Drive<'a> {
     pub(super) pressing: Option<Pressing>,
     /// N₀.
     pub(super) at_rest: f64,
+    /// Slopes of the only direction of K on the grid of turning points, once they are asked for.
+    slopes: OnceCell<Vec<f64>>,
 }
 
 /// A normal force that varies.
 pub(super) struct Pressing {
     pub(super) series: Vec<f64>,
-    /// Its slopes on the grid of turning points, where these are looked for.
-    pub(super) slopes: Vec<f64>,
+    /// Its slopes on the grid of turning points, once they are asked for.
+    slopes: OnceCell<Vec<f64>>,
+}
+
+impl Pressing {
+    pub(super) fn slopes(&self, table: &SampleTable) -> &[f64] {
+        self.slopes.get_or_init(|| table.slopes(&self.series))
+    }
 }
 
 /// When a contact is closed.
@@ -45,10 +54,7 @@ impl<'a> Drive<'a> {
         let pressing = law.normal_stiffness.filter(|_| varies).map(|k| {
             let mut series: Vec<f64> = normal.iter().map(|v| k * v).collect();
             series[0] += law.normal_at_rest();
-            // In two directions nothing but opening asks for turning points.
-            let asked = law.directions == 1 || !is_closed(&series);
-            let slopes = if asked { motion.table.slopes(&series) } else { Vec::new() };
-            Pressing { series, slopes }
+            Pressing { series, slopes: OnceCell::new() }
         });
         Self {
             table: motion.table,
@@ -57,7 +63,24 @@ impl<'a> Drive<'a> {
             pull: tangential.iter().map(|u| law.tangential_stiffness * u).collect(),
             pressing,
             at_rest: law.normal_at_rest(),
+            slopes: OnceCell::new(),
         }
+    }
+
+    /// Slopes of the only direction of K on the grid of turning points.
+    pub(super) fn slopes(&self) -> &[f64] {
+        self.slopes.get_or_init(|| self.table.slopes(self.pull(0)))
+    }
+
+    /// Whether amplitudes alone show that the limit never reaches a slider that rests there, of a
+    /// contact in one direction.
+    pub(super) fn holds(&self, slider: f64) -> bool {
+        let least = self.pressing.as_ref().map_or(self.at_rest, |pressing| {
+            let series = &pressing.series;
+            series[0] - swing(series)
+        });
+        let farthest = (self.pull[0] - slider).abs() + swing(&self.pull);
+        self.harmonics().has_mean() && farthest <= self.friction * least
     }
 
     pub(super) fn harmonics(&self) -> &'a Harmonics {
@@ -88,7 +111,7 @@ impl<'a> Drive<'a> {
     /// Where the first direction of K is least, and where it is largest.
     pub(super) fn extremes(&self) -> [TurningPoint; 2] {
         let mut turns = Vec::new();
-        self.table.turning_points(self.pull(0), &mut turns);
+        self.table.turning_points_by(self.pull(0), self.slopes().to_vec(), &mut turns);
         let still = TurningPoint { theta: 0.0, value: self.pull[0] };
         let by_value = |a: &&TurningPoint, b: &&TurningPoint| a.value.total_cmp(&b.value);
         let trough = turns.iter().min_by(by_value).copied().unwrap_or(still);
@@ -116,16 +139,17 @@ impl<'a> Drive<'a> {
 
     /// When the contact is closed.
     pub(super) fn closed(&self) -> Closed {
-        let Some(Pressing { series, slopes }) = &self.pressing else {
+        let Some(pressing) = &self.pressing else {
             return Closed::Always;
         };
+        let series = &pressing.series;
         if series[0] <= -swing(series) {
             return Closed::Never;
         } else if is_closed(series) {
             return Closed::Always;
         }
         let mut turns = Vec::new();
-        self.table.turning_points_by(series, slopes.clone(), &mut turns);
+        self.table.turning_points_by(series, pressing.slopes(self.table).to_vec(), &mut turns);
         if turns.iter().all(|turn| turn.value >= 0.0) {
             return Closed::Always;
         } else if turns.iter().all(|turn| turn.value <= 0.0) {

@@ -22,13 +22,14 @@ struct Wall {
 }
 
 impl Wall {
-    fn new(drive: &Drive<'_>, slopes: &[f64], sign: f64) -> Self {
+    fn new(drive: &Drive<'_>, sign: f64) -> Self {
         let by = sign * drive.friction;
         let mut series = drive.pull.clone();
-        let mut slopes = slopes.to_vec();
+        let mut slopes = drive.slopes().to_vec();
         if let Some(pressing) = &drive.pressing {
             series.iter_mut().zip(&pressing.series).for_each(|(k, n)| *k -= by * n);
-            slopes.iter_mut().zip(&pressing.slopes).for_each(|(k, n)| *k -= by * n);
+            let own = pressing.slopes(drive.table);
+            slopes.iter_mut().zip(own).for_each(|(k, n)| *k -= by * n);
         } else {
             series[0] -= by * drive.at_rest;
         }
@@ -103,8 +104,11 @@ pub(super) fn cycle(drive: &Drive<'_>, residual: Residual, rest: f64, rates: boo
         let state = State::Open;
         return Cycle::new(vec![Stretch { start: 0.0, end: span, state }], drive.columns());
     }
-    let slopes = drive.table.slopes(&drive.pull);
-    let walls = [1.0, -1.0].map(|sign| Wall::new(drive, &slopes, sign));
+    if matches!(closed, Closed::Always) && !residual.follows_middle() && drive.holds(rest) {
+        let state = State::Stuck { slider: [rest, 0.0], rate: vec![0.0; drive.columns()] };
+        return Cycle::new(vec![Stretch { start: 0.0, end: span, state }], drive.columns());
+    }
+    let walls = [1.0, -1.0].map(|sign| Wall::new(drive, sign));
     let mut play = Play { drive, walls, rates, cycle: Cycle::new(Vec::new(), drive.columns()) };
     match closed {
         Closed::During(windows) => {
@@ -136,8 +140,7 @@ pub(super) fn cycle(drive: &Drive<'_>, residual: Residual, rest: f64, rates: boo
 /// The positions that the walls leave a slider which never moves: from the first to the second, none
 /// if the first is the larger.
 pub(super) fn room(drive: &Drive<'_>) -> [f64; 2] {
-    let slopes = drive.table.slopes(&drive.pull);
-    [1.0, -1.0].map(|sign| Wall::new(drive, &slopes, sign).farthest().value)
+    [1.0, -1.0].map(|sign| Wall::new(drive, sign).farthest().value)
 }
 
 impl Play<'_> {
@@ -208,8 +211,8 @@ impl Play<'_> {
         lower: TurningPoint,
         upper: TurningPoint,
     ) -> State {
-        let [trough, crest] = self.drive.extremes();
-        let middle = 0.5 * (crest.value + trough.value);
+        let ends = residual.follows_middle().then(|| self.drive.extremes());
+        let middle = ends.map_or(rest, |[trough, crest]| 0.5 * (crest.value + trough.value));
         let [wanted] = residual.slider([middle], [rest]);
         let mut rate = vec![0.0; if self.rates { self.drive.columns() } else { 0 }];
         let slider = if wanted < lower.value {
@@ -219,9 +222,8 @@ impl Play<'_> {
             self.add_rate(upper.theta, 1.0, 1.0, &mut rate);
             upper.value
         } else {
-            if residual.follows_middle() {
-                self.add_rate(crest.theta, 0.5, 0.0, &mut rate);
-                self.add_rate(trough.theta, 0.5, 0.0, &mut rate);
+            for end in ends.into_iter().flatten() {
+                self.add_rate(end.theta, 0.5, 0.0, &mut rate);
             }
             wanted
         };

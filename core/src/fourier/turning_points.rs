@@ -47,14 +47,17 @@ impl SampleTable {
     pub fn new(harmonics: Harmonics) -> Self {
         let quarter = (SAMPLES_PER_HARMONIC * harmonics.highest().max(4)).div_ceil(4);
         let quarter = quarter.next_multiple_of(COARSER);
-        let step = std::f64::consts::FRAC_PI_2 / quarter as f64;
+        // The angles of all orders are multiples of the same step.
+        let count = 4 * quarter;
+        let step = std::f64::consts::TAU / count as f64;
+        let unit: Vec<_> = (0..count).map(|i| (i as f64 * step).sin_cos()).collect();
         let (mut cos, mut sin) = (Vec::new(), Vec::new());
         for &order in harmonics.oscillating() {
-            for i in 0..padded(quarter + 1) {
-                let (s, c) = (order as f64 * i as f64 * step).sin_cos();
+            let angles = (0..padded(quarter + 1)).map(|i| unit[order * i % count]);
+            angles.for_each(|(s, c)| {
                 cos.push(c);
                 sin.push(s);
-            }
+            });
         }
         Self { harmonics, quarter, cos, sin, instants: Instants::default() }
     }

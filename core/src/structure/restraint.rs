@@ -5,10 +5,14 @@ use super::Receptance;
 use faer::linalg::solvers::Solve as _;
 use faer::{c64, Mat, MatRef};
 
+/// Contacts up to which elimination by hand is faster than a library's.
+const FEW: usize = 12;
+
 /// Turns the receptance of the free structure into that of the stuck one:
 /// `G_s = (I + G D)⁻¹ G`.
 pub(super) fn restrain(stiffness: MatRef<'_, f64>, out: &mut Receptance) {
     let contacts = stiffness.nrows();
+    let sloped = out.slope.is_some() || !out.by_ratio.is_empty();
     if contacts == 1 {
         let d = stiffness[(0, 0)];
         let factor = (1.0 + out.contact[0] * d).inv();
@@ -20,6 +24,9 @@ pub(super) fn restrain(stiffness: MatRef<'_, f64>, out: &mut Receptance) {
         }
         out.by_ratio.iter_mut().for_each(|change| *change *= factor * factor);
         return;
+    }
+    if contacts <= FEW && !sloped {
+        return restrain_few(stiffness, out);
     }
     let stiffness = complex(stiffness);
     let column_major = |values: &[c64]| {
@@ -43,6 +50,53 @@ pub(super) fn restrain(stiffness: MatRef<'_, f64>, out: &mut Receptance) {
         let change = column_major(&out.by_ratio);
         store(lu.solve(change * kept).as_ref(), &mut out.by_ratio);
     }
+}
+
+/// The same of few contacts, without derivatives, by elimination with row pivoting.
+fn restrain_few(stiffness: MatRef<'_, f64>, out: &mut Receptance) {
+    let n = stiffness.nrows();
+    let mut coupling = [c64::new(0.0, 0.0); FEW * FEW];
+    for j in 0..n {
+        for k in 0..n {
+            let d = stiffness[(k, j)];
+            if d != 0.0 {
+                (0..n).for_each(|i| coupling[j * n + i] += out.contact[k * n + i] * d);
+            }
+        }
+        coupling[j * n + j] += 1.0;
+    }
+    let columns = |out: &mut Receptance, change: &mut dyn FnMut(&mut [c64])| {
+        out.contact.chunks_exact_mut(n).chain([&mut out.stuck[..]]).for_each(change);
+    };
+    for pivot in 0..n {
+        let size = |i: &usize| coupling[pivot * n + i].norm_sqr();
+        let best = (pivot..n).max_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or(pivot);
+        (0..n).for_each(|j| coupling.swap(j * n + pivot, j * n + best));
+        let inverse = coupling[pivot * n + pivot].inv();
+        let factors: [c64; FEW] = std::array::from_fn(|i| {
+            if i > pivot && i < n {
+                coupling[pivot * n + i] * inverse
+            } else {
+                c64::new(0.0, 0.0)
+            }
+        });
+        let mut eliminate = |column: &mut [c64]| {
+            column.swap(pivot, best);
+            let own = column[pivot];
+            (pivot + 1..n).for_each(|i| column[i] -= factors[i] * own);
+        };
+        columns(out, &mut eliminate);
+        for j in pivot + 1..n {
+            let own = coupling[j * n + pivot];
+            (pivot + 1..n).for_each(|i| coupling[j * n + i] -= factors[i] * own);
+        }
+    }
+    columns(out, &mut |column| {
+        for i in (0..n).rev() {
+            let known: c64 = (i + 1..n).map(|j| coupling[j * n + i] * column[j]).sum();
+            column[i] = (column[i] - known) * coupling[i * n + i].inv();
+        }
+    });
 }
 
 /// Column after column.

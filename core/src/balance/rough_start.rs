@@ -1,0 +1,77 @@
+//! Starts by fewer harmonics.
+//!
+//! Where contacts begin to slip, open or close between two points of a sweep, no extrapolation leads
+//! close to the next one, and Newton's method takes most of its steps to find the new states. Few
+//! harmonics know them, too, at a small part of the price.
+
+use super::condensed::Condensed;
+use super::forced::ForcedBalance;
+use super::modal_work::is_large;
+use super::settings::{Method, Resolution};
+use super::unknowns::Unknowns;
+use crate::fourier::Harmonics;
+use crate::solve::{newton, NewtonSettings, Outcome, System as _};
+use crate::Error;
+
+/// Harmonics over those of a rough start: its law costs a fifth of the whole one, its linear equations
+/// a thirtieth.
+const COARSER: usize = 3;
+/// From so many harmonics on a rough start is worth its price.
+const WORTHWHILE: usize = 19;
+/// Relative error at which a rough start is left: fewer harmonics are no nearer to the solution.
+const ROUGH: NewtonSettings = NewtonSettings { tolerance: 1e-3, max_iterations: 20 };
+/// A first step so small, relative to the motion: the extrapolation is as good.
+const NEAR: f64 = 1e-2;
+
+impl ForcedBalance<'_> {
+    /// Fewer harmonics, where they cost a small part only and leave out no load.
+    pub(super) fn coarser(&mut self, fine: Resolution) -> Option<Resolution> {
+        let harmonics = fine.harmonics / COARSER;
+        let table = self.table(fine.harmonics);
+        let loads = self.model.compliance().forced_harmonics().last().copied().unwrap_or(1);
+        let suits = self.settings.method == Method::Newton
+            && fine.harmonics >= WORTHWHILE
+            && harmonics >= loads
+            && !is_large(self.model.compliance(), table.harmonics());
+        suits.then_some(Resolution { harmonics, ..fine })
+    }
+
+    /// A start for a point, from an extrapolation that fewer harmonics find far from the solution.
+    pub(super) fn rough_start(
+        &mut self,
+        resolution: Resolution,
+        omega: f64,
+        start: &Unknowns,
+    ) -> Result<Option<Unknowns>, Error> {
+        let climbs = start.harmonics.highest() < resolution.harmonics;
+        let Some(coarse) = self.coarser(resolution).filter(|_| !climbs) else { return Ok(None) };
+        let table = self.table(coarse.harmonics);
+        let model = self.evaluated(coarse.samples)?;
+        let interrupted = self.interruption();
+        let mut equations = Condensed::new(model, &table, self.settings.residual, false);
+        equations.watch(&interrupted);
+        let mut x = start.recast(table.harmonics());
+        let found = equations.set_omega(omega).is_ok() && {
+            let (mut defect, mut step) = (vec![0.0; x.len()], vec![0.0; x.len()]);
+            equations.residual(&x, &mut defect);
+            let far =
+                equations.solve(&defect, &mut step) && equations.relative_size(&step, &x) > NEAR;
+            far && newton(&mut equations, &mut x, ROUGH).outcome == Outcome::Converged
+        };
+        self.add_profile(&equations.profile);
+        Ok(found.then(|| start.with_lower(table.harmonics(), &x)))
+    }
+}
+
+impl Unknowns {
+    /// The same series with other coefficients of some of the harmonics.
+    fn with_lower(&self, harmonics: &Harmonics, values: &[f64]) -> Self {
+        let lower = Self { harmonics: harmonics.clone(), values: values.to_vec() };
+        let mut changed = lower.recast(&self.harmonics);
+        let (slots, width) = (self.harmonics.slots(), harmonics.slots());
+        for (changed, own) in changed.chunks_exact_mut(slots).zip(self.values.chunks_exact(slots)) {
+            changed[width..].copy_from_slice(&own[width..]);
+        }
+        Self { harmonics: self.harmonics.clone(), values: changed }
+    }
+}
