@@ -92,7 +92,7 @@ impl Problem {
         let [mass, damping, stiffness] = [mass, damping, stiffness]
             .map(|(own, next)| CyclicMatrix::new(matrix(&own), matrix(&next)));
         let cyclic =
-            CyclicStructure { mass, damping, stiffness, sectors, engine_order, proportional };
+            CyclicStructure { mass, damping, stiffness, sectors, engine_order, proportional, massless: Vec::new() };
         let contacts = sector_contacts(contacts)?;
         let loads = harmonic_loads(forces);
         Self::of(py, move || Model::travelling_wave(cyclic, contacts, loads))
