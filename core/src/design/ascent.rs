@@ -94,7 +94,13 @@ impl Ascent {
             target[slider] = at.clamp(low, high);
         }
         for _ in 0..=SHORTENED {
-            let tried = pool.reach(from, &target)?;
+            let Some(tried) = pool.reach(from, &target) else {
+                // There may be no such motion so far away.
+                for (slider, _) in origin.held() {
+                    target[slider] += 0.5 * (origin.sliders[slider] - target[slider]);
+                }
+                continue;
+            };
             let motion = &pool.motions[tried];
             let way: Vec<f64> = (0..origin.sliders.len())
                 .map(|i| match widths(i) {
