@@ -14,7 +14,12 @@ def wedge(mass):
         for stiffness in ([[1e6, -9e5], [-9e5, 1e6]], [[4e5, -3e5], [-3e5, 4e5]])
     )
     damper = ss.WedgeDamper(
-        angle=60.0, mass=mass, friction=0.2, tangential_stiffness=3e5, normal_stiffness=3e5, load=240
+        angle=60.0,
+        mass=mass,
+        friction=0.2,
+        tangential_stiffness=3e5,
+        normal_stiffness=3e5,
+        load=240,
     )
     forces = [ss.Force("left.x", 150.0), ss.Force("right.x", 150.0, phase=np.pi)]
     ends = {"left_dofs": ["x", "y"], "right_dofs": ["x", "y"]}

@@ -369,8 +369,7 @@ fn rate_of(model: &Model, damping: &ModalDamping) -> f64 {
     let rates = ModalSystem::dof_rates(model);
     let squares = model.structure().massless().iter().map(|&dof| rates[dof].powi(2));
     let highest = model.compliance().stuck_frequencies().last().copied().unwrap_or(0.0);
-    highest.max(squares.sum::<f64>().sqrt())
-        + damping.matrix().norm_l2()
+    highest.max(squares.sum::<f64>().sqrt()) + damping.matrix().norm_l2()
 }
 
 fn is_zero(load: &[c64]) -> bool {

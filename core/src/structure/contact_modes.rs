@@ -63,7 +63,11 @@ impl ContactModes {
     }
 
     /// Of modes that the damping does not couple; nothing if there are few contacts.
-    pub(super) fn uncoupled(modes: &StuckModes<f64>, damping: &[f64], ports: &Ports) -> Option<Self> {
+    pub(super) fn uncoupled(
+        modes: &StuckModes<f64>,
+        damping: &[f64],
+        ports: &Ports,
+    ) -> Option<Self> {
         (ports.rows.nrows() >= Self::FEWEST).then(|| Self::of(modes, damping.to_vec(), None, ports))
     }
 
@@ -266,7 +270,8 @@ impl ContactModes {
         Mat::from_fn(coordinates.nrows(), coordinates.ncols(), |i, j| {
             let y = coordinates[(i, j)];
             let other = coupled.as_ref().map_or(c64::new(0.0, 0.0), |coupled| coupled[(i, j)]);
-            2.0 * k * k * omega * self.inertia[i] * y - c64::new(0.0, k) * (self.damping[i] * y + other)
+            2.0 * k * k * omega * self.inertia[i] * y
+                - c64::new(0.0, k) * (self.damping[i] * y + other)
         })
     }
 
@@ -331,7 +336,8 @@ impl ContactModes {
                 if let Some(other) = &coupled {
                     damped += c64::new(other[(*slot, j)], -other[(slot + 1, j)]);
                 }
-                let change = 2.0 * order * rate * self.inertia[j] * y - c64::new(0.0, order) * damped;
+                let change =
+                    2.0 * order * rate * self.inertia[j] * y - c64::new(0.0, order) * damped;
                 (coordinates[(*slot, j)], coordinates[(slot + 1, j)]) = (change.re, -change.im);
             }
         }

@@ -88,7 +88,10 @@ impl<T: ComplexField<Real = f64>> StuckModes<T> {
         let mut root = Mat::<T>::identity(massless.len(), massless.len());
         solve_upper_triangular_in_place(factor.L().adjoint(), root.as_mut(), Par::Seq);
         for j in 0..shapes.ncols() {
-            others.iter().enumerate().for_each(|(i, &dof)| whole[(dof, j)] = shapes[(i, j)].clone());
+            others
+                .iter()
+                .enumerate()
+                .for_each(|(i, &dof)| whole[(dof, j)] = shapes[(i, j)].clone());
             let own = massless.iter().enumerate();
             own.for_each(|(i, &dof)| whole[(dof, j)] = T::zero_impl() - follow[(i, j)].clone());
         }

@@ -173,7 +173,8 @@ impl ModalCompliance {
             };
         let [stuck_frequencies, free_frequencies] = frequencies;
         let right = beside(right.as_ref(), statics.as_ref());
-        let left = beside(left.adjoint().to_owned().as_ref(), statics.as_ref()).adjoint().to_owned();
+        let left =
+            beside(left.adjoint().to_owned().as_ref(), statics.as_ref()).adjoint().to_owned();
         Ok(Some(Self {
             base,
             outline: Outline {

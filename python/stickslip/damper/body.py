@@ -211,9 +211,7 @@ class RigidBody:
         mass[: self.axes, : self.axes] = (self.mass or NO_MASS) * np.eye(self.axes)
         if self.inertia is not None:
             turns = np.reshape(self.inertia, (size - self.axes,) * 2)
-            mass[self.axes :, self.axes :] = (
-                turns if turns.any() else NO_MASS * np.eye(len(turns))
-            )
+            mass[self.axes :, self.axes :] = turns if turns.any() else NO_MASS * np.eye(len(turns))
         return Structure(mass, np.zeros_like(mass), dofs=self.dofs)
 
 
