@@ -1,8 +1,8 @@
 """Bounds over residual tractions, by count: random systems that nobody has chosen.
 
-``python benchmarks/bounds_by_count.py [systems] [residuals]``: per system the points whose bounds a motion
-under another residual leaves, how wide they are, and what they cost beside a plain curve. Motions that are
-known to be unstable do not count: nothing stays on them.
+``python benchmarks/bounds_by_count.py [systems] [residuals]``: per system how far motions under
+other residuals leave the bounds, how wide these are, and what they cost beside a plain curve.
+Motions that are known to be unstable do not count: nothing stays on them.
 """
 
 from __future__ import annotations
@@ -72,8 +72,8 @@ def outside(seed: int, residuals: int) -> str:
         worst = max(worst, left[~known].max(initial=0.0))
     wide = high - low > 1e-9 * high
     return (
-        f"{seed:4d}  outside by {worst:8.1e}  unstable ones outside {unstable:3d}  wide at {wide.sum():2d}"
-        f" of {POINTS}, to {np.nanmax(high / low - 1.0):8.1e}"
+        f"{seed:4d}  outside by {worst:8.1e}  unstable ones outside {unstable:3d}"
+        f"  wide at {wide.sum():2d} of {POINTS}, to {np.nanmax(high / low - 1.0):8.1e}"
         f"  evaluations {bounded.counters['evaluations'] / plain.counters['evaluations']:4.1f}"
         f"  time {(end - middle) / max(middle - start, 1e-3):5.1f}"
     )

@@ -1,4 +1,4 @@
-"""Bounds of systems that nobody has chosen hold by count; benchmarks/bounds_by_count.py has more."""
+"""Bounds of systems that nobody has chosen hold; benchmarks/bounds_by_count.py has more."""
 
 import importlib.util
 from pathlib import Path

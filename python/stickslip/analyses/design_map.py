@@ -34,8 +34,8 @@ def design_map(
 
     Resonances of a model are located on a coarse grid with seven harmonics; the highest ones are
     then solved on ever narrower grids with twice the harmonics each, until the peak stays the same
-    within a quarter of the tolerance, and its error estimate is below half of it. Unlike with `damper_curve` whatever
-    `build` makes may vary: mass, angle, speed, geometry.
+    within a quarter of the tolerance, and its error estimate is below half of it. Unlike with
+    `damper_curve` whatever `build` makes may vary: mass, angle, speed, geometry.
 
     Parameters
     ----------
