@@ -91,8 +91,15 @@ impl Problem {
     ) -> PyResult<Self> {
         let [mass, damping, stiffness] = [mass, damping, stiffness]
             .map(|(own, next)| CyclicMatrix::new(matrix(&own), matrix(&next)));
-        let cyclic =
-            CyclicStructure { mass, damping, stiffness, sectors, engine_order, proportional };
+        let cyclic = CyclicStructure {
+            mass,
+            damping,
+            stiffness,
+            sectors,
+            engine_order,
+            proportional,
+            massless: Vec::new(),
+        };
         let contacts = sector_contacts(contacts)?;
         let loads = harmonic_loads(forces);
         Self::of(py, move || Model::travelling_wave(cyclic, contacts, loads))

@@ -50,6 +50,7 @@ fn ring(sectors: usize, engine_order: usize, between: Option<(f64, f64)>) -> Mod
         sectors,
         engine_order,
         proportional: false,
+        massless: Vec::new(),
     };
     Model::travelling_wave(cyclic, contacts, vec![HarmonicLoad { harmonic: 1, amplitude }]).unwrap()
 }

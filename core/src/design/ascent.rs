@@ -54,16 +54,34 @@ impl Ascent {
         Self { dof, sign, curvature: Vec::new() }
     }
 
-    /// Climbs from the best motion of a pool.
+    /// Climbs from the best motion of a pool, and from one that holds more sliders.
     fn climb(&mut self, pool: &mut HeldPool<'_>) {
-        let mut best = pool.best(self.dof, self.sign);
+        let best = pool.best(self.dof, self.sign);
+        self.climb_from(pool, best);
+        // Where that one leaves fewer sliders to vary, others may still pass it.
+        let best = pool.best(self.dof, self.sign);
+        let (held, height) =
+            (pool.motions[best].held().count(), self.place(&pool.motions[best]).height);
+        let hope = |from: &usize| {
+            let place = self.place(&pool.motions[*from]);
+            place.height + place.promise
+        };
+        let others = (0..pool.motions.len()).filter(|&from| {
+            pool.motions[from].held().count() > held && hope(&from) > height + ENOUGH * height.abs()
+        });
+        if let Some(other) = others.max_by(|a, b| hope(a).total_cmp(&hope(b)).then(b.cmp(a))) {
+            self.climb_from(pool, other);
+        }
+    }
+
+    fn climb_from(&mut self, pool: &mut HeldPool<'_>, mut from: usize) {
         for _ in 0..STEPS {
-            let place = self.place(&pool.motions[best]);
+            let place = self.place(&pool.motions[from]);
             if place.promise <= ENOUGH * place.height.abs() {
                 return;
             }
-            let Some(next) = self.step(pool, best, &place) else { return };
-            best = next;
+            let Some(next) = self.step(pool, from, &place) else { return };
+            from = next;
         }
     }
 
@@ -94,7 +112,13 @@ impl Ascent {
             target[slider] = at.clamp(low, high);
         }
         for _ in 0..=SHORTENED {
-            let tried = pool.reach(from, &target)?;
+            let Some(tried) = pool.reach(from, &target) else {
+                // There may be no such motion so far away.
+                for (slider, _) in origin.held() {
+                    target[slider] += 0.5 * (origin.sliders[slider] - target[slider]);
+                }
+                continue;
+            };
             let motion = &pool.motions[tried];
             let way: Vec<f64> = (0..origin.sliders.len())
                 .map(|i| match widths(i) {

@@ -15,11 +15,14 @@ use std::sync::Arc;
 use std::time::Duration;
 
 /// Harmonics with which resonances are located.
-const COARSE: usize = 3;
+const COARSE: usize = 7;
 /// Share of the highest of the coarse maxima from which on a rival is looked at too.
-const NEAR: f64 = 0.8;
+const NEAR: f64 = 0.7;
 /// Frequencies around a maximum, at first and then.
-const LOCAL: [usize; 2] = [5, 3];
+const LOCAL: [usize; 2] = [7, 5];
+/// Shares of the tolerance that the last doubling may change, and that the error estimate may reach: what
+/// is left decays no faster than what was seen.
+const SETTLED: [f64; 2] = [0.25, 0.5];
 /// Time between two questions whether to go on.
 const PATIENCE: Duration = Duration::from_millis(50);
 
@@ -149,8 +152,8 @@ impl Search<'_> {
             let (omega, amplitude) = vertex(&near, &heights);
             let solved = points.iter().filter(|point| point.is_solved());
             let error = solved.map(|point| point.error_estimate[0]).fold(0.0, f64::max);
-            let stays = (amplitude - before).abs() <= tolerance * amplitude;
-            if stays && error <= tolerance * amplitude {
+            let [change, left] = SETTLED.map(|share| share * tolerance * amplitude);
+            if (amplitude - before).abs() <= change && error <= left {
                 return Ok(CellPeak { omega, amplitude, harmonics });
             }
             // A peak that has wandered off is followed before the grid narrows.

@@ -76,6 +76,7 @@ impl Model {
         let parts = contacts.into_iter().map(|c| (c.law, vec![c.rows]));
         let ContactAssembly { laws, points, rows: [rows, _], stiffness } =
             ContactAssembly::new(structure.dofs(), parts)?;
+        let structure = structure.held_by(rows.as_ref(), stiffness.as_ref());
         let ports = Ports { rows, stiffness, loads };
         Self::of(Body::Whole, structure, ports, laws, points)
     }
@@ -92,6 +93,7 @@ impl Model {
         let parts = contacts.into_iter().map(|c| (c.law, vec![c.own, c.next]));
         let ContactAssembly { laws, points, rows: [own, next], stiffness } =
             ContactAssembly::new(cyclic.dofs(), parts)?;
+        let cyclic = cyclic.held_by(own.as_ref(), stiffness.as_ref());
         let structure = cyclic.sector()?;
         let ports = Ports { rows: own, stiffness, loads };
         let body = Body::Wave { cyclic: Arc::new(cyclic), next: Arc::new(next) };
@@ -127,6 +129,7 @@ impl Model {
             laws.extend(own.laws);
             let [own_rows, next] = own.rows;
             let stiffness = own.stiffness;
+            let structure = structure.held_by(own_rows.as_ref(), stiffness.as_ref());
             parts.push(RingSector { structure, own: own_rows, next, stiffness, loads });
         }
         let ring = Arc::new(Ring::new(parts, coupling)?);

@@ -365,8 +365,11 @@ impl ContactState {
 
 /// Fastest rate of the free motion [1/s].
 fn rate_of(model: &Model, damping: &ModalDamping) -> f64 {
-    model.compliance().stuck_frequencies().last().copied().unwrap_or(0.0)
-        + damping.matrix().norm_l2()
+    // No natural frequency tells of the substitutes of DOFs without mass.
+    let rates = ModalSystem::dof_rates(model);
+    let squares = model.structure().massless().iter().map(|&dof| rates[dof].powi(2));
+    let highest = model.compliance().stuck_frequencies().last().copied().unwrap_or(0.0);
+    highest.max(squares.sum::<f64>().sqrt()) + damping.matrix().norm_l2()
 }
 
 fn is_zero(load: &[c64]) -> bool {

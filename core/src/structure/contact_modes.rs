@@ -5,6 +5,7 @@
 //! diagonal, and GMRES from the diagonal takes a few products with it.
 
 use super::flexibility::RIGID_BODY;
+use super::massless::StuckModes;
 use super::modes::{RealModes, RESONANCE};
 use super::ports::{HarmonicLoad, Ports};
 use crate::solve::{gmres, KrylovSettings};
@@ -24,6 +25,9 @@ pub struct ContactModes {
     contacts: Mat<f64>,
     /// Φᵀ, modes × N.
     dofs: Mat<f64>,
+    /// Modal mass: 1, or 0 of what DOFs without mass add.
+    inertia: Vec<f64>,
+    /// Modal stiffness.
     omega_squared: Vec<f64>,
     damping: Vec<f64>,
     /// `Φᵀ C Φ` without its diagonal, transposed, if it couples modes.
@@ -46,7 +50,7 @@ impl ContactModes {
 
     /// Of the modes of the stuck structure and `Φᵀ C Φ`; nothing if there are few contacts.
     pub(super) fn new(
-        modes: &RealModes,
+        modes: &StuckModes<f64>,
         damping: impl FnOnce() -> Mat<f64>,
         ports: &Ports,
     ) -> Option<Self> {
@@ -59,14 +63,39 @@ impl ContactModes {
     }
 
     /// Of modes that the damping does not couple; nothing if there are few contacts.
-    pub(super) fn uncoupled(modes: &RealModes, damping: &[f64], ports: &Ports) -> Option<Self> {
+    pub(super) fn uncoupled(
+        modes: &StuckModes<f64>,
+        damping: &[f64],
+        ports: &Ports,
+    ) -> Option<Self> {
         (ports.rows.nrows() >= Self::FEWEST).then(|| Self::of(modes, damping.to_vec(), None, ports))
     }
 
-    fn of(modes: &RealModes, damping: Vec<f64>, coupling: Option<Mat<f64>>, ports: &Ports) -> Self {
+    fn of(
+        stuck: &StuckModes<f64>,
+        mut damping: Vec<f64>,
+        coupling: Option<Mat<f64>>,
+        ports: &Ports,
+    ) -> Self {
+        let StuckModes { modes, statics } = stuck;
+        let (size, own) = (modes.shapes.nrows(), modes.shapes.ncols());
+        let all = own + statics.ncols();
+        let shapes = Mat::from_fn(size, all, |i, j| {
+            if j < own {
+                modes.shapes[(i, j)]
+            } else {
+                statics[(i, j - own)]
+            }
+        });
+        let modes = RealModes { omega_squared: modes.omega_squared.clone(), shapes };
+        let mut omega_squared = modes.omega_squared.clone();
+        omega_squared.resize(all, 1.0);
+        damping.resize(all, 0.0);
+        let inertia = (0..all).map(|j| if j < own { 1.0 } else { 0.0 }).collect();
         let dofs = modes.shapes.transpose().to_owned();
         let coupling = coupling.map(|matrix| {
-            let mut transposed = matrix.transpose().to_owned();
+            let mut transposed = Mat::zeros(all, all);
+            transposed.get_mut(..own, ..own).copy_from(matrix.transpose());
             (0..transposed.nrows()).for_each(|j| transposed[(j, j)] = 0.0);
             transposed
         });
@@ -79,12 +108,18 @@ impl ContactModes {
         };
         Self {
             contacts: seen(dofs.as_ref(), ports.rows.as_ref()),
-            omega_squared: modes.omega_squared.clone(),
+            inertia,
+            omega_squared,
             loads: ports.loads.iter().map(project).collect(),
             dofs,
             damping,
             coupling,
         }
+    }
+
+    /// Dynamic stiffness of a mode by itself.
+    fn stiffness(&self, j: usize, rate: f64) -> c64 {
+        c64::new(self.omega_squared[j] - self.inertia[j] * rate * rate, rate * self.damping[j])
     }
 
     /// Number of modes.
@@ -118,9 +153,8 @@ impl ContactModes {
         for (order, slot) in harmonics {
             let rate = order as f64 * omega;
             self.check(order, omega).map_err(|error| (order, error))?;
-            let modes = self.omega_squared.iter().zip(&self.damping);
-            let inverse = modes.map(|(natural, damping)| {
-                let own = c64::new(natural - rate * rate, rate * damping);
+            let inverse = (0..self.modes()).map(|j| {
+                let own = self.stiffness(j, rate);
                 // Met exactly by a mode that damping only couples: the iteration sees to the rest.
                 let least = RESONANCE * rate * rate;
                 if own.norm() < least { c64::new(0.0, least) } else { own }.inv()
@@ -134,16 +168,18 @@ impl ContactModes {
     /// Refuses rigid-body motion under static loads, and an undamped mode at its resonance.
     pub(super) fn check(&self, order: usize, omega: f64) -> Result<(), Error> {
         if order == 0 {
-            let largest = self.omega_squared.iter().fold(0.0_f64, |m, w| m.max(w.abs()));
-            let lowest = self.omega_squared.first().map_or(0.0, |w| w.max(0.0).sqrt());
-            let rigid = self.omega_squared.iter().any(|w| w.abs() <= RIGID_BODY * largest);
+            let own = self.inertia.iter().filter(|m| **m > 0.0).count();
+            let natural = &self.omega_squared[..own];
+            let largest = natural.iter().fold(0.0_f64, |m, w| m.max(w.abs()));
+            let lowest = natural.first().map_or(0.0, |w| w.max(0.0).sqrt());
+            let rigid = natural.iter().any(|w| w.abs() <= RIGID_BODY * largest);
             return if rigid { Err(Error::SingularStiffness { lowest }) } else { Ok(()) };
         }
         let rate = order as f64 * omega;
         for (j, (natural, damping)) in self.omega_squared.iter().zip(&self.damping).enumerate() {
             let distance = (natural - rate * rate).abs() + rate * damping.abs();
             let coupled = self.coupling.as_ref().is_some_and(|c| c.col(j).norm_max() > 0.0);
-            if distance > RESONANCE * rate * rate || coupled {
+            if distance > RESONANCE * rate * rate || coupled || self.inertia[j] == 0.0 {
                 continue;
             }
             let seen = self.contacts.row(j).norm_max() > 0.0
@@ -211,7 +247,7 @@ impl ContactModes {
     /// couples modes.
     pub(super) fn solved(&self, order: usize, omega: f64, forces: Mat<c64>) -> Mat<c64> {
         let rate = order as f64 * omega;
-        let own = |j: usize| c64::new(self.omega_squared[j] - rate * rate, rate * self.damping[j]);
+        let own = |j: usize| self.stiffness(j, rate);
         // Damping couples nothing at rest.
         let Some(coupling) = self.coupling.as_ref().filter(|_| rate != 0.0) else {
             return Mat::from_fn(forces.nrows(), forces.ncols(), |i, j| forces[(i, j)] / own(i));
@@ -234,7 +270,8 @@ impl ContactModes {
         Mat::from_fn(coordinates.nrows(), coordinates.ncols(), |i, j| {
             let y = coordinates[(i, j)];
             let other = coupled.as_ref().map_or(c64::new(0.0, 0.0), |coupled| coupled[(i, j)]);
-            2.0 * k * k * omega * y - c64::new(0.0, k) * (self.damping[i] * y + other)
+            2.0 * k * k * omega * self.inertia[i] * y
+                - c64::new(0.0, k) * (self.damping[i] * y + other)
         })
     }
 
@@ -246,7 +283,8 @@ impl ContactModes {
 
     /// Half-power bandwidth of the least damped mode [rad/s].
     pub(super) fn narrowest_bandwidth(&self) -> f64 {
-        self.damping.iter().map(|c| c.abs()).fold(f64::MAX, f64::min)
+        let modes = self.damping.iter().zip(&self.inertia).filter(|(_, inertia)| **inertia > 0.0);
+        modes.map(|(c, _)| c.abs()).fold(f64::MAX, f64::min)
     }
 
     /// Turns modal forces into modal coordinates, `Z⁻¹ f`, to a relative tolerance where the damping
@@ -298,7 +336,8 @@ impl ContactModes {
                 if let Some(other) = &coupled {
                     damped += c64::new(other[(*slot, j)], -other[(slot + 1, j)]);
                 }
-                let change = 2.0 * order * rate * y - c64::new(0.0, order) * damped;
+                let change =
+                    2.0 * order * rate * self.inertia[j] * y - c64::new(0.0, order) * damped;
                 (coordinates[(*slot, j)], coordinates[(slot + 1, j)]) = (change.re, -change.im);
             }
         }

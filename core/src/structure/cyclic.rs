@@ -4,6 +4,7 @@
 //! angle 2πE/n, so that harmonic k has the phase `δ = 2πkE/n` from sector to sector: it sees the
 //! disk at nodal diameter kE mod n. That is exact, friction between the sectors included.
 
+use super::massless::{substitute, without_mass, StuckModes};
 use super::modal::Wave;
 use super::modes::modes;
 use super::ports::{forced_harmonics, Ports};
@@ -63,6 +64,8 @@ pub struct CyclicStructure {
     pub engine_order: usize,
     /// Whether a law made the damping, one that couples no modes of any nodal diameter.
     pub proportional: bool,
+    /// DOFs without mass; a model finds them.
+    pub massless: Vec<usize>,
 }
 
 /// Contacts and loads of a sector; rows act on the sector itself and on the next one.
@@ -98,7 +101,19 @@ impl CyclicStructure {
     pub fn sector(&self) -> Result<Structure, Error> {
         let [mass, damping, stiffness] =
             [&self.mass, &self.damping, &self.stiffness].map(|matrix| matrix.own.as_ref());
-        Structure::new(mass, damping, stiffness)
+        Ok(Structure::new(mass, damping, stiffness)?.with_massless(self.massless.clone()))
+    }
+
+    /// The same structure with substitutes for masses that are none, held by these contacts of a sector.
+    #[must_use]
+    pub(crate) fn held_by(mut self, own: MatRef<'_, f64>, stiffness: MatRef<'_, f64>) -> Self {
+        self.massless = without_mass(self.mass.own.as_ref());
+        let held = &self.stiffness.own + own.transpose() * stiffness * own;
+        let held: Vec<f64> = (0..self.dofs()).map(|i| held[(i, i)]).collect();
+        if !self.massless.is_empty() {
+            substitute(&mut self.mass.own, &self.massless, &held);
+        }
+        self
     }
 
     /// Mass, damping and stiffness of a wave of a nodal diameter.
@@ -137,7 +152,9 @@ impl CyclicStructure {
         let delta = self.phase(diameter);
         let rows = wave_rows(own, next, delta);
         let restrained = restrained(&self.stiffness.wave(delta), &rows, stiffness);
-        Ok(modes(self.mass.wave(delta).as_ref(), restrained.as_ref())?.frequencies())
+        let mass = self.mass.wave(delta);
+        let stuck = StuckModes::new(mass.as_ref(), restrained.as_ref(), &self.massless)?;
+        Ok(stuck.modes.frequencies())
     }
 }
 
@@ -235,7 +252,8 @@ impl CyclicCompliance {
                 structure.stiffness.standing(sign),
             );
             let whole = Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref())?
-                .with_law(structure.proportional);
+                .with_law(structure.proportional)
+                .with_massless(structure.massless.clone());
             let ports = Ports {
                 rows: &self.ports.own + faer::Scale(sign) * &self.ports.next,
                 stiffness: self.ports.stiffness.clone(),
@@ -248,13 +266,15 @@ impl CyclicCompliance {
         let (mass, damping) = (structure.mass.wave(delta), structure.damping.wave(delta));
         let free_stiffness = structure.stiffness.wave(delta);
         let stuck_stiffness = restrained(&free_stiffness, &rows, self.ports.stiffness.as_ref());
-        let stuck = modes(mass.as_ref(), stuck_stiffness.as_ref())?;
+        let held = StuckModes::new(mass.as_ref(), stuck_stiffness.as_ref(), &structure.massless)?;
+        let StuckModes { modes: stuck, statics } = held;
         let free = modes(mass.as_ref(), free_stiffness.as_ref())?;
         let (stuck_frequencies, free_frequencies) = (stuck.frequencies(), free.frequencies());
         let loads = self.loads_at(diameter);
         let wave = Wave {
             law: structure.proportional && !follows_mass(damping.as_ref(), mass.as_ref()),
             stuck: stuck.clone(),
+            statics,
             free: free.clone(),
             rows: rows.clone(),
             stiffness: self.ports.stiffness.clone(),
@@ -263,7 +283,15 @@ impl CyclicCompliance {
         let project =
             |free_modes| if free_modes { &free } else { &stuck }.damping(damping.as_ref());
         let modal = ModalCompliance::of_wave(wave, project)?;
-        let matrices = [mass, damping, stuck_stiffness];
+        let own = |i: usize| !structure.massless.contains(&i);
+        let inert = Mat::from_fn(mass.nrows(), mass.ncols(), |i, j| {
+            if own(i) && own(j) {
+                mass[(i, j)]
+            } else {
+                c64::new(0.0, 0.0)
+            }
+        });
+        let matrices = [inert, damping, stuck_stiffness];
         let direct = DirectCompliance::of_matrices(matrices, rows, loads)
             .with_frequencies(stuck_frequencies, free_frequencies);
         match modal {

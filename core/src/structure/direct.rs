@@ -32,14 +32,15 @@ impl DirectCompliance {
         let restrained =
             structure.restrained_stiffness(ports.rows.as_ref(), ports.stiffness.as_ref());
         let direct = Self::of(structure, ports, restrained.as_ref());
-        let stuck = modes(structure.mass(), restrained.as_ref())?.frequencies();
+        let stuck = structure.modes_at(restrained.as_ref())?.modes.frequencies();
         let free = modes(structure.mass(), structure.stiffness())?.frequencies();
         Ok(direct.with_frequencies(stuck, free))
     }
 
     /// As [`DirectCompliance::new`], without the natural frequencies.
     pub(super) fn of(structure: &Structure, ports: &Ports, restrained: MatRef<'_, f64>) -> Self {
-        let matrices = [structure.mass(), structure.damping(), restrained].map(complex);
+        let mass = structure.true_mass();
+        let matrices = [mass.as_ref(), structure.damping(), restrained].map(complex);
         Self::of_matrices(matrices, complex(ports.rows.as_ref()), ports.loads.clone())
     }
 

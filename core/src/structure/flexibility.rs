@@ -1,6 +1,6 @@
 //! The static side of a compliance.
 
-use super::modes::RealModes;
+use super::massless::StuckModes;
 use super::ports::Ports;
 use super::Receptance;
 use faer::{c64, Mat, MatRef};
@@ -18,7 +18,8 @@ pub(super) struct Flexibility {
 
 impl Flexibility {
     /// `None` if the stuck structure has rigid-body modes.
-    pub(super) fn new(stuck: &RealModes, ports: &Ports) -> Option<Self> {
+    pub(super) fn new(stuck: &StuckModes<f64>, ports: &Ports) -> Option<Self> {
+        let StuckModes { modes: stuck, statics } = stuck;
         let largest = stuck.omega_squared.iter().fold(0.0_f64, |m, w| m.max(w.abs()));
         if stuck.omega_squared.iter().any(|w| w.abs() <= RIGID_BODY * largest) {
             return None;
@@ -30,7 +31,7 @@ impl Flexibility {
                     modal[(i, j)] /= w;
                 }
             }
-            &stuck.shapes * modal
+            &stuck.shapes * modal + statics * (statics.transpose() * load)
         };
         let static_load = Mat::from_fn(ports.rows.ncols(), 1, |i, _| {
             ports.load(0).map_or(0.0, |load| load[i].re)

@@ -3,7 +3,7 @@
 //! those who ask.
 
 use super::contact_modes::ContactModes;
-use super::modes::{modes, squared_frequencies, RealModes};
+use super::modes::{squared_frequencies, RealModes};
 use super::ports::{forced_harmonics, Ports};
 use super::proportional::follows_mass;
 use super::restraint::store;
@@ -38,15 +38,15 @@ impl InterfaceCompliance {
         }
         let restrained =
             structure.restrained_stiffness(ports.rows.as_ref(), ports.stiffness.as_ref());
-        let stuck = modes(mass, restrained.as_ref())?;
+        let stuck = structure.modes_at(restrained.as_ref())?;
         drop(restrained);
         let seen = if uncoupled {
             let rate = damping[(0, 0)] / mass[(0, 0)];
-            ContactModes::uncoupled(&stuck, &vec![rate; stuck.omega_squared.len()], ports)
+            ContactModes::uncoupled(&stuck, &vec![rate; stuck.modes.omega_squared.len()], ports)
         } else {
-            ContactModes::new(&stuck, || stuck.project(damping), ports)
+            ContactModes::new(&stuck, || stuck.modes.project(damping), ports)
         };
-        let stuck = stuck.frequencies();
+        let stuck = stuck.modes.frequencies();
         let Some(modes) = seen else { return Ok(None) };
         let bandwidth = modes.narrowest_bandwidth();
         let omega_squared = squared_frequencies(mass, structure.stiffness())?;

@@ -10,6 +10,7 @@ mod direct;
 mod flexibility;
 mod flutter_compliance;
 mod interface;
+mod massless;
 mod modal;
 mod modes;
 mod poles;

@@ -9,6 +9,7 @@
 use super::contact_modes::ContactModes;
 use super::flexibility::Flexibility;
 use super::interface::InterfaceCompliance;
+use super::massless::StuckModes;
 use super::modes::{complex, modes, HermitianModes, RealModes, RESONANCE};
 use super::ports::{forced_harmonics, HarmonicLoad, Ports};
 use super::proportional::{follows_mass, ModalDamping};
@@ -44,11 +45,14 @@ pub enum ModalBase {
 pub struct ModalCompliance {
     base: ModalBase,
     spectrum: Spectrum,
-    /// R: displacement of every DOF per modal coordinate, N × modes.
+    /// R: displacement of every DOF per modal coordinate, N × modes, with the shapes of DOFs without mass
+    /// behind them.
     right: Arc<Mat<c64>>,
     /// B R and L Bᵀ, contacts × modes each.
     contact_right: Arc<Mat<c64>>,
     contact_left: Arc<Mat<c64>>,
+    /// Number of shapes of no inertia and unit stiffness.
+    statics: usize,
     /// Negative damping of each mode of a damping `C + r C_neg`; of modes of the free structure.
     negative: Vec<f64>,
     /// L P_k per forced harmonic.
@@ -64,6 +68,8 @@ pub struct ModalCompliance {
 /// What a modal compliance is made of: modes of the stuck and of the free structure, rows of B (complex in a travelling wave), contact stiffness and loads.
 pub(super) struct Wave {
     pub(super) stuck: HermitianModes,
+    /// What DOFs without mass add to them.
+    pub(super) statics: Mat<c64>,
     pub(super) free: HermitianModes,
     /// Whether a law says that the damping is diagonal in the free modes, and in no others.
     pub(super) law: bool,
@@ -110,19 +116,20 @@ impl ModalCompliance {
         let (mass, damping) = (structure.mass(), structure.damping());
         let free = modes(mass, structure.stiffness())?;
         let stuck = if restrained.as_ref() == structure.stiffness() {
-            free.clone()
+            StuckModes { modes: free.clone(), statics: Mat::zeros(structure.dofs(), 0) }
         } else {
-            modes(mass, restrained.as_ref())?
+            structure.modes_at(restrained.as_ref())?
         };
         let wave = Wave {
             law: structure.is_proportional() && !follows_mass(damping, mass),
-            stuck: stuck.to_hermitian(),
+            stuck: stuck.modes.to_hermitian(),
+            statics: complex(stuck.statics.as_ref()),
             free: free.to_hermitian(),
             rows: complex(ports.rows.as_ref()),
             stiffness: ports.stiffness.clone(),
             loads: ports.loads.clone(),
         };
-        let project = |free_modes| if free_modes { &free } else { &stuck }.damping(damping);
+        let project = |free_modes| if free_modes { &free } else { &stuck.modes }.damping(damping);
         let Some(modal) = Self::of_wave(wave, project)? else { return Ok(None) };
         let contact_modes = modal.contact_modes_of(&stuck, damping, ports).map(Arc::new);
         let flexibility = Flexibility::new(&stuck, ports);
@@ -137,7 +144,10 @@ impl ModalCompliance {
         wave: Wave,
         project: impl Fn(bool) -> ModalDamping,
     ) -> Result<Option<Self>, Error> {
-        let Wave { stuck, free, law, rows, stiffness, loads } = wave;
+        let Wave { stuck, statics, free, law, rows, stiffness, loads } = wave;
+        // Substitutes for masses that are none are no part of this.
+        let substituted = statics.ncols() > 0;
+        let law = law && !substituted;
         let frequencies = [&stuck, &free].map(HermitianModes::frequencies);
         let of_real = |(modes, damping): (HermitianModes, Vec<f64>), floor| {
             let left = modes.shapes.adjoint().to_owned();
@@ -150,7 +160,9 @@ impl ModalCompliance {
         let (base, (spectrum, right, left), restraint) =
             if let Some(separate) = in_stuck.as_ref().and_then(in_stuck_modes) {
                 (ModalBase::Stuck, of_real(separate, 0.0), None)
-            } else if let Some(separate) = project(true).separated(free, law) {
+            } else if let Some(separate) =
+                (!substituted).then(|| project(true)).and_then(|own| own.separated(free, law))
+            {
                 (ModalBase::Free, of_real(separate, FREE_FLOOR), Some(stiffness))
             } else {
                 let damping = in_stuck.unwrap_or_else(|| project(false));
@@ -160,6 +172,9 @@ impl ModalCompliance {
                 (ModalBase::Complex, modes, None)
             };
         let [stuck_frequencies, free_frequencies] = frequencies;
+        let right = beside(right.as_ref(), statics.as_ref());
+        let left =
+            beside(left.adjoint().to_owned().as_ref(), statics.as_ref()).adjoint().to_owned();
         Ok(Some(Self {
             base,
             outline: Outline {
@@ -170,6 +185,7 @@ impl ModalCompliance {
             },
             contact_right: Arc::new(&rows * &right),
             contact_left: Arc::new((&left * rows.adjoint()).transpose().to_owned()),
+            statics: statics.ncols(),
             negative: Vec::new(),
             loads: loads
                 .iter()
@@ -199,6 +215,7 @@ impl ModalCompliance {
             right: Arc::new(complex(shapes.as_ref())),
             contact_right: Arc::clone(&contacts),
             contact_left: contacts,
+            statics: 0,
             negative,
             loads: Vec::new(),
             restraint: None,
@@ -211,19 +228,20 @@ impl ModalCompliance {
     /// The modes of the stuck structure at many contacts, as the damping leaves them.
     fn contact_modes_of(
         &self,
-        stuck: &RealModes,
+        stuck: &StuckModes<f64>,
         damping: MatRef<'_, f64>,
         ports: &Ports,
     ) -> Option<ContactModes> {
         match (self.base, &self.spectrum) {
             (ModalBase::Stuck, Spectrum::Real { omega_squared, damping, .. }) => {
-                let shapes = Mat::from_fn(self.right.nrows(), self.right.ncols(), |i, j| {
+                let shapes = Mat::from_fn(self.right.nrows(), omega_squared.len(), |i, j| {
                     self.right[(i, j)].re
                 });
                 let modes = RealModes { omega_squared: omega_squared.clone(), shapes };
-                ContactModes::uncoupled(&modes, damping, ports)
+                let statics = stuck.statics.clone();
+                ContactModes::uncoupled(&StuckModes { modes, statics }, damping, ports)
             }
-            _ => ContactModes::new(stuck, || stuck.project(damping), ports),
+            _ => ContactModes::new(stuck, || stuck.modes.project(damping), ports),
         }
     }
 
@@ -259,6 +277,15 @@ impl ModalCompliance {
             let scale = theirs.contact.iter().map(|g| g.norm()).fold(0.0, f64::max);
             ours.contact.iter().zip(&theirs.contact).all(|(a, b)| (a - b).norm() <= 1e-8 * scale)
         })
+    }
+
+    /// Weight of a mode at `omega` and its derivative in ω.
+    fn weight(&self, j: usize, omega: f64) -> (c64, c64) {
+        if j + self.statics < self.right.ncols() {
+            self.spectrum.weight(j, omega)
+        } else {
+            (c64::new(1.0, 0.0), c64::new(0.0, 0.0))
+        }
     }
 
     fn singular(&self) -> Error {
@@ -310,7 +337,7 @@ impl ModalCompliance {
             self.multiply_modes(order, omega, out);
         }
         for j in 0..self.right.ncols() {
-            let (weight, slope) = self.spectrum.weight(j, order * omega);
+            let (weight, slope) = self.weight(j, order * omega);
             let slope = order * slope;
             for column in (0..contacts).filter(|_| !by_products) {
                 let left = self.contact_left[(column, j)];
@@ -344,7 +371,7 @@ impl ModalCompliance {
         let (contacts, modes) = (self.contacts(), self.right.ncols());
         let weights: Vec<[c64; 2]> = (0..modes)
             .map(|j| {
-                let (weight, slope) = self.spectrum.weight(j, order * omega);
+                let (weight, slope) = self.weight(j, order * omega);
                 [weight, order * slope]
             })
             .collect();
@@ -415,7 +442,7 @@ impl Compliance for ModalCompliance {
             for (i, force) in forces.iter().enumerate() {
                 excitation += self.contact_left[(i, j)] * force;
             }
-            let (weight, slope) = self.spectrum.weight(j, order * omega);
+            let (weight, slope) = self.weight(j, order * omega);
             let coordinate = if sloped { order * slope } else { weight } * excitation;
             let shape = self.right.col(j);
             for (x, &dof) in out.iter_mut().zip(observe) {
@@ -438,4 +465,16 @@ fn multiply(matrix: MatRef<'_, c64>, vector: &[c64]) -> Vec<c64> {
     (0..matrix.nrows())
         .map(|i| (0..vector.len()).map(|j| matrix[(i, j)] * vector[j]).sum())
         .collect()
+}
+
+/// The columns of two matrices beside one another.
+fn beside(first: MatRef<'_, c64>, second: MatRef<'_, c64>) -> Mat<c64> {
+    let own = first.ncols();
+    Mat::from_fn(first.nrows(), own + second.ncols(), |i, j| {
+        if j < own {
+            first[(i, j)]
+        } else {
+            second[(i, j - own)]
+        }
+    })
 }

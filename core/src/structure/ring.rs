@@ -5,7 +5,6 @@
 //! DOFs of their coupling alone, so that a response of the whole disk takes one cyclic block
 //! tridiagonal solution in these DOFs: the effort grows with the number of sectors.
 
-use super::modes::modes;
 use super::ports::{forced_harmonics, HarmonicLoad, Ports};
 use super::ring_order::{RingLayout, RingOrder};
 use super::{compliance, Compliance, Outline, Receptance, Structure};
@@ -236,6 +235,10 @@ impl Ring {
         }
         let structure = Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref())?
             .with_law(self.parts.iter().all(|part| part.structure.is_proportional()));
+        let massless = self.parts.iter().enumerate().flat_map(|(index, part)| {
+            part.structure.massless().iter().map(move |dof| index * dofs + dof)
+        });
+        let structure = structure.with_massless(massless.collect());
         Ok((structure, Ports { rows, stiffness: of_contacts, loads }))
     }
 
@@ -250,7 +253,7 @@ impl Ring {
                 } else {
                     structure.stiffness().to_owned()
                 };
-                Ok(modes(structure.mass(), stiffness.as_ref())?.frequencies())
+                Ok(structure.modes_at(stiffness.as_ref())?.modes.frequencies())
             };
             // The sectors have been decomposed; a disk that cannot be has no stops in a range.
             [true, false].map(|stuck| frequencies(stuck).unwrap_or_default())
@@ -278,7 +281,8 @@ fn isolated(
     held += before.next.transpose() * (&before.stiffness * &before.next);
     // No law knows of contacts that hold the sector.
     let structure = Structure::new(part.structure.mass(), part.structure.damping(), held.as_ref())?
-        .with_law(part.structure.is_proportional() && between.is_empty());
+        .with_law(part.structure.is_proportional() && between.is_empty())
+        .with_massless(part.structure.massless().to_vec());
     let rows = Mat::from_fn(ports, *dofs, |i, j| {
         if i < *contacts {
             part.own[(i, j)]

@@ -1,5 +1,6 @@
 //! Mass, damping and stiffness.
 
+use super::massless::{substitute, without_mass, StuckModes};
 use crate::Error;
 use faer::{Mat, MatRef};
 
@@ -15,6 +16,8 @@ pub struct Structure {
     damping: Mat<f64>,
     stiffness: Mat<f64>,
     proportional: bool,
+    /// DOFs without mass, which have a substitute in the matrix.
+    massless: Vec<usize>,
 }
 
 impl Structure {
@@ -54,6 +57,7 @@ impl Structure {
             damping: damping.to_owned(),
             stiffness: symmetric("stiffness", stiffness)?,
             proportional: false,
+            massless: without_mass(mass),
         };
         structure.mass.llt(faer::Side::Lower).map_err(|_| Error::IndefiniteMass)?;
         Ok(structure)
@@ -65,6 +69,54 @@ impl Structure {
     #[must_use]
     pub fn with_law(self, proportional: bool) -> Self {
         Self { proportional, ..self }
+    }
+
+    /// The same structure, held by the contacts of these rows, with substitutes for masses that are none:
+    /// what moves in time needs some.
+    #[must_use]
+    pub(crate) fn held_by(
+        mut self,
+        rows: MatRef<'_, f64>,
+        contact_stiffness: MatRef<'_, f64>,
+    ) -> Self {
+        if !self.massless.is_empty() {
+            let restrained = self.restrained_stiffness(rows, contact_stiffness);
+            let own: Vec<f64> = (0..self.dofs()).map(|i| restrained[(i, i)]).collect();
+            substitute(&mut self.mass, &self.massless, &own);
+        }
+        self
+    }
+
+    /// The same structure, where these DOFs have no mass but a substitute.
+    #[must_use]
+    pub(crate) fn with_massless(self, massless: Vec<usize>) -> Self {
+        Self { massless, ..self }
+    }
+
+    /// DOFs without mass: the contacts alone decide how they move.
+    #[must_use]
+    pub fn massless(&self) -> &[usize] {
+        &self.massless
+    }
+
+    /// Mass matrix without substitutes \[kg\].
+    pub(super) fn true_mass(&self) -> Mat<f64> {
+        let own = |i: usize| !self.massless.contains(&i);
+        Mat::from_fn(self.dofs(), self.dofs(), |i, j| {
+            if own(i) && own(j) {
+                self.mass[(i, j)]
+            } else {
+                0.0
+            }
+        })
+    }
+
+    /// Modes with another stiffness, such as that of the stuck structure.
+    ///
+    /// # Errors
+    /// The eigenvalue iteration fails.
+    pub(super) fn modes_at(&self, stiffness: MatRef<'_, f64>) -> Result<StuckModes<f64>, Error> {
+        StuckModes::new(self.mass(), stiffness, &self.massless)
     }
 
     /// Whether a law made the damping, one that couples none of the modes without contacts.
@@ -79,7 +131,7 @@ impl Structure {
         self.mass.nrows()
     }
 
-    /// Mass matrix \[kg\].
+    /// Mass matrix \[kg\]; of DOFs without mass a substitute.
     #[must_use]
     pub fn mass(&self) -> MatRef<'_, f64> {
         self.mass.as_ref()

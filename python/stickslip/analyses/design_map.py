@@ -32,10 +32,10 @@ def design_map(
 ) -> DesignMap:
     """Find the peak of a response for all pairs of values of two parameters of a design.
 
-    Resonances of a model are located on a coarse grid with three harmonics; the highest ones are
+    Resonances of a model are located on a coarse grid with seven harmonics; the highest ones are
     then solved on ever narrower grids with twice the harmonics each, until the peak stays the same
-    within the tolerance, which is above its error estimate. Unlike with `damper_curve` whatever
-    `build` makes may vary: mass, angle, speed, geometry.
+    within a quarter of the tolerance, and its error estimate is below half of it. Unlike with
+    `damper_curve` whatever `build` makes may vary: mass, angle, speed, geometry.
 
     Parameters
     ----------
@@ -50,8 +50,7 @@ def design_map(
     points : int, optional
         Frequencies of the coarse grid. A resonance much narrower than their distance may be missed.
     tolerance : float, optional
-        Change of the peak, relative to it, with twice the harmonics that counts as none, and the
-        error estimate that is small enough.
+        Accuracy of the peaks, relative to them.
     max_harmonics : int, optional
         Harmonics at which a peak is given up: it counts as not found.
     threads : int, optional

@@ -18,6 +18,8 @@ Sum: TypeAlias = dict[str, float]
 """Factors of degrees of freedom, whose sum is a displacement."""
 Vector: TypeAlias = tuple[float, ...]
 
+NO_MASS = 1e-200
+"""Mass that stands for none [kg, kg m2]: the core condenses such degrees of freedom statically."""
 PLANAR, SPATIAL = ("x", "y", "rotation"), ("x", "y", "z", "rx", "ry", "rz")
 """Degrees of freedom of a rigid body in a plane and in space."""
 
@@ -122,8 +124,8 @@ class Body(Protocol):
     def at(self, point: ContactPoint) -> list[Sum]:
         """Return the displacement of a point along each axis, a sum of degrees of freedom."""
 
-    def structure(self, least: float, arm: float) -> Structure:
-        """Return the body by itself; where it has no mass, the `least` one, at an `arm` [m]."""
+    def structure(self) -> Structure:
+        """Return the body by itself; a mass of `NO_MASS` is none."""
 
 
 @dataclass(frozen=True, init=False)
@@ -202,16 +204,14 @@ class RigidBody:
             for row in moved
         ]
 
-    def structure(self, least: float, arm: float) -> Structure:
-        """Return mass without stiffness; where there is none, the `least` one, at an `arm`."""
+    def structure(self) -> Structure:
+        """Return mass without stiffness; where there is none, `NO_MASS`."""
         size = len(self.dofs)
         mass = np.zeros((size, size))
-        mass[: self.axes, : self.axes] = (self.mass or least) * np.eye(self.axes)
+        mass[: self.axes, : self.axes] = (self.mass or NO_MASS) * np.eye(self.axes)
         if self.inertia is not None:
             turns = np.reshape(self.inertia, (size - self.axes,) * 2)
-            mass[self.axes :, self.axes :] = (
-                turns if turns.any() else least * arm**2 * np.eye(len(turns))
-            )
+            mass[self.axes :, self.axes :] = turns if turns.any() else NO_MASS * np.eye(len(turns))
         return Structure(mass, np.zeros_like(mass), dofs=self.dofs)
 
 
@@ -271,7 +271,7 @@ class FlexibleBody:
             self.own.index(dof)
         return [{dof: 1.0} for dof in point.dofs]
 
-    def structure(self, least: float, arm: float) -> Structure:
+    def structure(self) -> Structure:
         """Return the body; it has mass."""
         return self.own
 

@@ -22,13 +22,6 @@ from stickslip.model.nodes import Displacement
 from stickslip.model.structure import side_by_side
 
 LEFT, RIGHT, DAMPER = "left", "right", "damper"
-_FASTER = 1e3
-"""Natural frequency of a body without mass on its contacts, over the highest of a DOF beside it.
-
-What its inertia changes is the square of the ratio to the motion, below 1e-6 at the highest of
-these frequencies and far less where one computes. Frequencies farther apart than 1e6 would cost
-the static flexibility its digits.
-"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -274,8 +267,7 @@ class Damper(ABC):
         """Return structure and bodies in one, with contacts and loads."""
         text(name, "damper: name")
         names = {one: name + one.removeprefix(DAMPER) for one in self.bodies}
-        bodies = self._structures([] if structure is None else [structure])
-        own = join({names[one]: body for one, body in bodies.items()})
+        own = join({names[one]: body.structure() for one, body in self.bodies.items()})
         contacts = self._contacts(touched, names)
         if name != DAMPER:
             contacts = [one.named(f"{name}.{one.name}") for one in contacts]
@@ -289,31 +281,6 @@ class Damper(ABC):
             return Built(own, contacts, loads)
         both = side_by_side([structure, own], [*structure.dofs, *own.dofs])
         return Built(both, contacts, loads)
-
-    def _structures(self, neighbours: Iterable[Structure]) -> dict[str, Structure]:
-        """Return the bodies by themselves."""
-        fastest = max(
-            (
-                np.sqrt(np.abs(np.diag(one.stiffness)) / np.diag(one.mass)).max()
-                for one in neighbours
-            ),
-            default=1.0,
-        )
-        springs = [
-            one
-            for face in self.faces
-            for one in (face.tangential_stiffness, face.normal_stiffness)
-            if one > 0.0
-        ]
-        least = min(springs, default=1.0) / (_FASTER * (fastest or 1.0)) ** 2
-        spans = [
-            np.linalg.norm(point.position)
-            for face in self.faces
-            for point in face.points
-            if point.position is not None
-        ]
-        arm = float(max(spans, default=1.0)) or 1.0
-        return {name: body.structure(least, arm) for name, body in self.bodies.items()}
 
     def _contacts(
         self, touched: Mapping[str, Neighbour | None], names: Mapping[str, str]
