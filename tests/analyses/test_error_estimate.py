@@ -40,9 +40,10 @@ def mixed(seed: int) -> tuple[ss.Model, np.ndarray]:
     return model, np.sort(np.exp(rng.uniform(*ends, 10)))
 
 
-# In 22, 26, 40 and 59 contacts that stick in the truncated solution slip in the true one, which one
-# Newton step does not foresee. In 22 the second one does not either: a DOF errs by 12 estimates.
-MISSED = pytest.mark.xfail(strict=True, reason="contacts that stick in the truncated solution")
+# In 22, 26, 40 and 59 contacts that stick in the truncated solution slip in the true one, or slip
+# in other parts of the period, which one Newton step does not foresee. At one point of 22 the
+# second step is right, but its change counts up to twice the first: the error is 5.8 estimates.
+MISSED = pytest.mark.xfail(strict=True, reason="the second step counts up to twice the first")
 
 
 @pytest.mark.slow

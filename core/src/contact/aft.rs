@@ -210,7 +210,6 @@ impl ContactLaw for Aft<Box<dyn ContactLaw>> {
         return_map(before: &[f64], after: &[f64], state: &mut [f64], force: &mut [f64],
             jacobian: Option<&mut ReturnMapJacobian>);
         stuck_load(residual: Residual, low: f64, high: f64) -> Option<[f64; 3]>;
-        yields(motion: Motion<'_>, samples: &Samples) -> bool;
         parameters() -> Vec<Parameter>;
         elements() -> Option<Vec<Element>>;
         describing(amplitude: f64) -> Option<Describing>;

@@ -21,7 +21,7 @@ use super::dual::{Dual, Real};
 use super::law::{HarmonicForce, ReturnMapJacobian};
 use super::parameter::number;
 use super::slip_element::Element;
-use super::{AssumedStart, ContactLaw, Held, Motion, Parameter, Parameters, Samples};
+use super::{AssumedStart, ContactLaw, Held, Motion, Parameter, Parameters};
 use crate::Error;
 use faer::Mat;
 use std::sync::Arc;
@@ -312,26 +312,6 @@ impl ContactLaw for Coulomb {
 
     fn is_monotone(&self) -> bool {
         self.is_odd()
-    }
-
-    /// Where it opens, or its limits leave no position to a slider that rests.
-    fn yields(&self, _motion: Motion<'_>, samples: &Samples) -> bool {
-        let mut room = [[f64::NEG_INFINITY, f64::INFINITY]; 2];
-        for n in 0..samples.count {
-            let u = samples.at(n);
-            let pressing = self.pressing(u);
-            if pressing < 0.0 {
-                return true;
-            }
-            let limit = self.friction * pressing;
-            for ([low, high], u) in room.iter_mut().zip(&u[..self.directions]) {
-                for pull in [*u, samples.sign * u].map(|u| self.tangential_stiffness * u) {
-                    *low = low.max(pull - limit);
-                    *high = high.min(pull + limit);
-                }
-            }
-        }
-        room.iter().any(|[low, high]| low > high)
     }
 
     /// Of a contact whose normal load varies, at the load without motion.

@@ -6,7 +6,7 @@
 
 use super::point_state::Phase;
 use super::slip_element::Element;
-use super::{AssumedStart, Describing, Held, Parameter, Residual, Samples};
+use super::{AssumedStart, Describing, Held, Parameter, Residual};
 use crate::fourier::{Harmonics, SampleTable};
 use crate::Error;
 use faer::Mat;
@@ -190,14 +190,6 @@ pub trait ContactLaw: Send + Sync + std::fmt::Debug {
     /// such rule: a march of them starts without slip.
     fn stuck_load(&self, _residual: Residual, _low: f64, _high: f64) -> Option<[f64; 3]> {
         None
-    }
-
-    /// Whether a few instants of a motion show that it slips or opens, so that nobody has to ask for its
-    /// slip load.
-    fn yields(&self, motion: Motion<'_>, samples: &Samples) -> bool {
-        let shown = self.stuck_load(motion.residual, 0.0, 0.0).is_some();
-        let (low, high) = if shown { samples.range() } else { (0.0, 0.0) };
-        shown && self.stuck_load(motion.residual, low, high).is_none()
     }
 
     /// The same law with all its stiffness multiplied by `share`, for homotopies.

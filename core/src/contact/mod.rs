@@ -69,7 +69,6 @@ pub use parameter::{Parameter, Parameters};
 pub use point_state::{Phase, PointState};
 pub use registry::law;
 pub use residual::{AssumedStart, Held, Residual};
-pub(crate) use samples::Samples;
 pub use slider::Slider;
 pub use slip_element::{Bound, Element, SlipElement, SlipPlane};
 pub use stop::Stop;

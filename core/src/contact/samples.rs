@@ -31,14 +31,6 @@ impl Samples {
         Self { count, sign: if half { -1.0 } else { 1.0 }, basis, displacement }
     }
 
-    /// Lowest and highest displacement of a motion of one point.
-    pub fn range(&self) -> (f64, f64) {
-        let start = (f64::INFINITY, f64::NEG_INFINITY);
-        let all =
-            self.displacement.iter().flat_map(|u| [*u, if self.sign < 0.0 { -u } else { *u }]);
-        all.fold(start, |(low, high), u| (low.min(u), high.max(u)))
-    }
-
     /// Displacements at instant n.
     pub fn at(&self, n: usize) -> &[f64] {
         let points = self.displacement.len() / self.count;
