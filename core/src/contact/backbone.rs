@@ -145,6 +145,20 @@ impl Backbone {
         }
     }
 
+    /// The loss by the formula that holds up to the first break at or behind `piece` breaks: beyond it
+    /// the formula goes on as far as it has a meaning.
+    pub(super) fn loss_on(&self, piece: usize, x: f64) -> Loss {
+        match self {
+            Self::Iwan { chi, beta } if piece == 0 => {
+                let share = x / gross_slip(*chi, *beta);
+                power_loss(*chi, *beta, share)
+            }
+            Self::Table(table) => table.on_row(piece, x),
+            Self::ShearLayer { .. } if piece == 0 => Loss::default(),
+            _ => self.loss(x),
+        }
+    }
+
     /// Displacements x at which the shape is not analytic, ascending.
     pub(super) fn breaks(&self) -> Vec<f64> {
         match self {
@@ -239,10 +253,7 @@ fn gross_slip(chi: f64, beta: f64) -> f64 {
 /// `λ' = (x/x_max)^(χ+1)/(1 + β)` up to gross slip, 1 beyond.
 fn iwan(chi: f64, beta: f64, x: f64) -> Loss {
     let end = gross_slip(chi, beta);
-    let share = (x / end).min(1.0);
-    let slope = share.powf(chi + 1.0) / (1.0 + beta);
-    let value = slope * share * end / (chi + 2.0);
-    let inner = Loss { integral: value * share * end / (chi + 3.0), value, slope };
+    let inner = power_loss(chi, beta, (x / end).min(1.0));
     if x < end {
         inner
     } else {
@@ -250,9 +261,20 @@ fn iwan(chi: f64, beta: f64, x: f64) -> Loss {
     }
 }
 
+/// What that is at a share of x_max by its power law.
+fn power_loss(chi: f64, beta: f64, share: f64) -> Loss {
+    let end = gross_slip(chi, beta);
+    let slope = share.powf(chi + 1.0) / (1.0 + beta);
+    let value = slope * share * end / (chi + 2.0);
+    Loss { integral: value * share * end / (chi + 3.0), value, slope }
+}
+
 impl Table {
     fn loss(&self, x: f64) -> Loss {
-        let row = self.x.partition_point(|own| *own <= x).max(1) - 1;
+        self.on_row(self.x.partition_point(|own| *own <= x).max(1) - 1, x)
+    }
+
+    fn on_row(&self, row: usize, x: f64) -> Loss {
         self.loss[row].straight(self.slope[row], x - self.x[row])
     }
 }

@@ -63,6 +63,7 @@ pub(crate) use described::Described;
 pub use describing::Describing;
 pub use elastic::Elastic;
 pub use jenkins::Jenkins;
+pub use loading_curve::LoadingCurve;
 pub use law::{ContactLaw, HarmonicForce, Motion, PointSummary, ReturnMapJacobian, SlipLoad};
 pub use masing::Masing;
 pub use parameter::{Parameter, Parameters};

@@ -1,5 +1,6 @@
 //! The elements of all contacts, one after the other.
 
+use super::microslip::{Loaded, Microslip, PLACES as REVERSALS};
 use crate::contact::{Bound, ContactLaw, Elastic, PointState, SlipElement, SlipPlane};
 use crate::model::Model;
 use crate::Error;
@@ -32,13 +33,15 @@ pub(crate) struct Body {
 pub(super) struct Bodies {
     pub(super) all: Vec<Body>,
     pub(super) components: Vec<usize>,
+    /// Those without sliders.
+    pub(super) microslips: Vec<Microslip>,
 }
 
 impl Bodies {
     /// Elements that a motion can be followed by from event to event; where `marched`, laws that
     /// have none take part as a whole, by their return maps.
     pub(super) fn new(model: &Model, marched: bool) -> Result<Self, Error> {
-        let mut bodies = Self { all: Vec::new(), components: Vec::new() };
+        let mut bodies = Self { all: Vec::new(), components: Vec::new(), microslips: Vec::new() };
         for (contact, (law, range)) in model.laws().iter().zip(model.points()).enumerate() {
             match law.elements() {
                 Some(elements) => {
@@ -46,6 +49,18 @@ impl Bodies {
                         let own = element.components.iter().map(|own| range.start + own);
                         bodies.add(contact, own, element.law, None)?;
                     }
+                }
+                None if !marched && law.loading().is_some() => {
+                    let Some(curve) = law.loading() else { continue };
+                    let own = Arc::new(Loaded(curve.clone()));
+                    bodies.add(contact, range.clone(), own, Some(1 + REVERSALS))?;
+                    let Some(body) = bodies.all.last() else { continue };
+                    bodies.microslips.push(Microslip {
+                        point: body.points.start,
+                        memory: body.memory.clone(),
+                        breaks: curve.breaks(),
+                        curve,
+                    });
                 }
                 None if marched => {
                     let own = law.with_memory(PLACES);
@@ -72,7 +87,7 @@ impl Bodies {
     ) -> Result<(), Error> {
         let (bounds, stiffness) = (law.bounds(), law.stiffness());
         let held: Vec<bool> =
-            bounds.iter().map(|bound| !matches!(bound, Bound::Unilateral { .. })).collect();
+            bounds.iter().map(|bound| matches!(bound, Bound::Constant(_) | Bound::Friction { .. })).collect();
         let own = Mat::from_fn(held.len(), held.len(), |i, j| {
             if held[i] && held[j] {
                 stiffness[(i, j)]

@@ -1,7 +1,8 @@
 //! The state of a motion: modal displacements and velocities, contact forces.
 
 use super::bodies::Body;
-use super::modal_system::ModalSystem;
+use super::microslip::{Reversals, PLACES as REVERSALS};
+use super::modal_system::{dot, ModalSystem};
 use crate::contact::{Bound, PointState};
 use crate::error::brief;
 use crate::Error;
@@ -31,6 +32,8 @@ pub struct State {
     pub force: Vec<f64>,
     /// What the laws remember whose forces are not their state.
     pub memory: Vec<f64>,
+    /// Reversals of the contacts without sliders.
+    pub reversals: Vec<Reversals>,
     /// What each contact point does.
     pub points: Vec<PointState>,
 }
@@ -47,6 +50,7 @@ impl State {
             velocity: vec![0.0; modes],
             force: vec![0.0; points],
             memory: vec![0.0; memory],
+            reversals: vec![Reversals::default(); system.microslips.len()],
             points: vec![PointState::Stuck; points],
         };
         if system.has_normals() || memory > 0 {
@@ -132,6 +136,43 @@ impl State {
             self.memory[body.memory.clone()].copy_from_slice(memory);
             values = rest;
         }
+        self.reverse(system);
+    }
+
+    /// Takes the reversals that the memory tells over.
+    fn reverse(&mut self, system: &ModalSystem) {
+        for (own, reversals) in system.microslips.iter().zip(&mut self.reversals) {
+            let [origin, ways @ ..] = &self.memory[own.memory.clone()] else { continue };
+            let now = dot(system.contact_shape(own.point), &self.displacement);
+            *reversals = Reversals::through(own, *origin, ways, now).0;
+        }
+    }
+
+    /// Of each contact without sliders, the numbers of the memory that its reversals are made of.
+    pub(crate) fn recall_ways(&mut self, system: &ModalSystem, values: &[f64]) -> Vec<Vec<usize>> {
+        let mut kept = Vec::new();
+        for ((own, reversals), values) in
+            system.microslips.iter().zip(&mut self.reversals).zip(values.chunks_exact(1 + REVERSALS))
+        {
+            let now = dot(system.contact_shape(own.point), &self.displacement);
+            let numbers;
+            (*reversals, numbers) = Reversals::through(own, values[0], &values[1..], now);
+            kept.push(numbers);
+        }
+        self.settle_microslips(system);
+        kept
+    }
+
+    /// Gives the contacts without sliders their directions and forces.
+    fn settle_microslips(&mut self, system: &ModalSystem) {
+        for (own, reversals) in system.microslips.iter().zip(&self.reversals) {
+            let [u, speed] = [&self.displacement, &self.velocity]
+                .map(|values| dot(system.contact_shape(own.point), values));
+            let sign = reversals.heading(u, speed);
+            self.points[own.point] = PointState::slipping(sign);
+            self.force[own.point] = reversals.force(own, sign, u);
+            self.memory[own.memory.clone()].copy_from_slice(&reversals.numbers());
+        }
     }
 
     /// Opens and closes contacts as the displacements say.
@@ -194,9 +235,13 @@ impl State {
     pub fn to_dofs(&self, system: &ModalSystem) -> Vec<f64> {
         let mut values = system.to_dofs(&self.displacement);
         values.extend(system.to_dofs(&self.velocity));
+        let mut memory = self.memory.clone();
+        for (own, reversals) in system.microslips.iter().zip(&self.reversals) {
+            memory[own.memory.clone()].copy_from_slice(&reversals.numbers());
+        }
         for body in system.bodies() {
             values.extend(body.remembered.iter().map(|&i| self.force[i]));
-            values.extend(&self.memory[body.memory.clone()]);
+            values.extend(&memory[body.memory.clone()]);
         }
         values
     }
@@ -212,6 +257,9 @@ impl State {
             let range = body.points.clone();
             let size = range.len();
             let force = &mut self.force[range.clone()];
+            if matches!(system.bounds[range.start], Bound::Backbone(_)) {
+                continue;
+            }
             if body.remembered.is_empty() {
                 let memory = &mut self.memory[body.memory.clone()];
                 body.law.march(&at[range.clone()], &at[range.clone()], memory, force);
@@ -229,6 +277,10 @@ impl State {
                     };
                 }
             }
+        }
+        self.settle_microslips(system);
+        for own in &system.microslips {
+            held[own.point] = self.points[own.point];
         }
         for plane in system.planes() {
             if plane.points.iter().any(|&i| held[i].slips()) {
