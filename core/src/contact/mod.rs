@@ -56,6 +56,7 @@ mod transitions;
 
 pub use aft::Aft;
 pub use backbone::{Backbone, Table};
+pub use shear_layer::Layer;
 pub use bouc_wen::BoucWen;
 pub use coulomb::{Closure, Coulomb};
 pub use cubic::Cubic;

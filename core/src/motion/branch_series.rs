@@ -137,13 +137,11 @@ impl BranchSeries {
         }
     }
 
-    /// Displacements at which another formula begins to hold, and what their rounding counts against.
-    pub(super) fn targets(&self, own: &Microslip) -> (Vec<f64>, f64) {
-        let Branch { begun: [from, _], sign, share } = self.branch;
-        let ahead = own.breaks.get(self.piece).map(|by| from + sign * by / share);
-        let targets: Vec<f64> = self.closes.into_iter().chain(ahead).collect();
-        let scale = targets.iter().fold(self.start.abs(), |most, to| most.max(to.abs()));
-        (targets, scale)
+    /// Displacements at which another formula begins to hold, each with a distance that is rounding.
+    pub(super) fn targets(&self, own: &Microslip) -> Vec<[f64; 2]> {
+        let ahead = own.breaks.get(self.piece).map(|by| self.branch.target(*by));
+        let all = self.closes.into_iter().chain(ahead);
+        all.map(|target| [target, self.branch.rounding(self.start, target)]).collect()
     }
 
     /// Forgets the rest: another length is tried.

@@ -78,22 +78,18 @@ impl Flow<'_> {
     /// Whether a contact without sliders turns round, or goes on along another formula.
     fn turns(&mut self, point: usize, state: PointState, natural: f64, length: f64) -> Next {
         let sign = state.sign();
-        let Some((targets, scale)) = self.series.targets(self.system, point) else {
-            return Next::Stay;
-        };
         let (mut first, mut window) = (Next::Stay, length);
-        for target in targets {
+        for [target, near] in self.series.targets(self.system, point) {
             self.scratch.clear();
             self.scratch.extend(self.series.contact(point).iter().map(|u| -sign * u));
             self.scratch[0] += sign * target;
-            rescale(&mut self.scratch, natural);
-            match self.leaves(window / natural, scale) {
-                Some(0.0) => return Next::Now(state),
-                Some(share) => {
-                    window = share * natural;
-                    first = Next::At(window, state);
-                }
-                None => {}
+            if self.scratch[0] <= near {
+                return Next::Now(state);
+            }
+            rescale(&mut self.scratch, window);
+            if let Some(share) = first_zero(&self.scratch) {
+                window *= share;
+                first = Next::At(window, state);
             }
         }
         self.scratch.clear();

@@ -71,9 +71,19 @@ impl Branch {
 
     /// Number of breaks of the backbone that lie behind.
     pub(super) fn piece(&self, breaks: &[f64], u: f64) -> usize {
-        let near = ROUNDING * self.share * (u.abs() + self.begun[0].abs());
-        let distance = self.distance(u) + near;
-        breaks.partition_point(|own| *own <= distance)
+        let distance = self.distance(u);
+        let near = |by: f64| 2.0 * self.share * self.rounding(u, self.target(by));
+        breaks.partition_point(|by| *by <= distance + near(*by))
+    }
+
+    /// Displacement at which the backbone has a displacement.
+    pub(super) fn target(&self, by: f64) -> f64 {
+        self.begun[0] + self.sign * by / self.share
+    }
+
+    /// Distance of two displacements that is rounding.
+    pub(super) fn rounding(&self, u: f64, target: f64) -> f64 {
+        ROUNDING * (u.abs() + target.abs() + self.begun[0].abs())
     }
 
     fn force(&self, own: &Microslip, u: f64) -> f64 {
@@ -131,7 +141,7 @@ impl Reversals {
     /// Forgets a loop that is closed at a displacement.
     pub(super) fn close(&mut self, sign: f64, u: f64) -> Turn {
         let Some(target) = self.target() else { return Turn::Forgotten(0) };
-        let room = ROUNDING * (u.abs() + target.abs() + self.turns[self.turns.len() - 1][0].abs());
+        let room = 2.0 * self.branch(sign).rounding(u, target);
         if sign * (u - target) < -room {
             return Turn::Forgotten(0);
         }

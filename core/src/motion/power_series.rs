@@ -335,11 +335,11 @@ impl PowerSeries {
         &self.branches
     }
 
-    /// Displacements at which a contact without sliders goes on by another formula, and what their
-    /// rounding counts against; nothing of other contacts.
-    pub(super) fn targets(&self, system: &ModalSystem, point: usize) -> Option<(Vec<f64>, f64)> {
-        let branch = self.branches.iter().find(|branch| branch.point == point)?;
-        Some(branch.targets(&system.microslips[branch.number]))
+    /// Displacements at which a contact without sliders goes on by another formula, each with a distance
+    /// that is rounding.
+    pub(super) fn targets(&self, system: &ModalSystem, point: usize) -> Vec<[f64; 2]> {
+        let branch = self.branches.iter().find(|branch| branch.point == point);
+        branch.map_or(Vec::new(), |branch| branch.targets(&system.microslips[branch.number]))
     }
 
     /// The contacts that slide in a plane.
