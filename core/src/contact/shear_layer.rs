@@ -17,7 +17,9 @@ const LEFT_OUT: f64 = 1e-13;
 /// Share of the bar in slip up to which α itself is sought: the series would lose the digits of a small loss.
 const LITTLE: f64 = 0.01;
 /// Halvings of an interval at most.
-const HALVINGS: u32 = 30;
+const HALVINGS: u32 = 16;
+/// Share of displacement and work by which the rounding of a loss is wrong, as a difference of them.
+const ROUNDING: f64 = 4e-15;
 
 /// The shear layer of one shear lag.
 #[derive(Debug, Clone, PartialEq)]
@@ -71,9 +73,12 @@ impl Layer {
                 (0..3).for_each(|i| term[i] += share * value[i]);
             }
         }
+        let w = 0.5 * (1.0 - low * low);
+        let lost = [self.end / (w * w), self.end * self.end / (w * w * w), 1.0 / w];
         let rough = (0..3).any(|i| {
             let size = values.iter().fold(0.0_f64, |most, value| most.max(value[i].abs()));
-            terms[TERMS - 2..].iter().any(|term| term[i].abs() > LEFT_OUT * size)
+            let most = (LEFT_OUT * size).max(ROUNDING * lost[i]);
+            terms[TERMS - 2..].iter().any(|term| term[i].abs() > most)
         });
         if rough && halvings > 0 {
             let middle = 0.5 * (low + high);

@@ -18,9 +18,9 @@ const COUNT: usize = ORDER + 1;
 /// Last coefficients of the rest times the length of the step, and by themselves, relative to the force, …
 const LEFT_OUT: [f64; 2] = [1e-15, 1e-11];
 /// … and those of the stiffness relative to it.
-const LEFT_OUT_SLOPE: [f64; 2] = [1e-8, 1e-3];
-/// Change of the rest by a pass, relative to the force, that is rounding.
-const SETTLED: f64 = 1e-16;
+const LEFT_OUT_SLOPE: [f64; 2] = [1e-7, 1e-2];
+/// Share of the forces that the rest is the difference of, that is rounding.
+const ROUNDING: f64 = 1e-15;
 
 /// Chebyshev points on the unit interval, and what makes powers of values there.
 struct Rule {
@@ -144,6 +144,11 @@ impl BranchSeries {
         all.map(|target| [target, self.branch.rounding(self.start, target)]).collect()
     }
 
+    /// Whether it begins at its reversal, without velocity.
+    pub(super) fn begins(&self) -> bool {
+        self.branch.share < 1.0 && self.start == self.branch.begun[0]
+    }
+
     /// Forgets the rest: another length is tried.
     pub(super) fn restart(&mut self) {
         (self.rest, self.last) = ([0.0; COUNT], [0.0; COUNT]);
@@ -162,20 +167,22 @@ impl BranchSeries {
         let [lost, _] = self.branch.lost(&self.curve, self.piece, self.start);
         let k = self.curve.stiffness();
         let (mut rest, mut slope) = ([0.0; COUNT], [0.0; COUNT]);
-        let mut farthest = 0.0_f64;
+        let (mut farthest, mut most) = (0.0_f64, 0.0_f64);
         for (j, x) in rule().points.iter().enumerate() {
             let by = way(x * length);
             let [own, loss] = self.branch.lost(&self.curve, self.piece, self.start + by);
             rest[j] = (k - self.tangent) * by - (own - lost);
             slope[j] = k - loss;
             farthest = farthest.max(by.abs());
+            most = most.max(own.abs());
         }
         rest[0] = 0.0;
         let size = self.size.max((k * farthest).min(self.curve.limit()));
         let changed = rest.iter().zip(&self.last).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         let first = self.last == [0.0; COUNT];
+        let floor = ROUNDING * (size + most + k * farthest);
         let beyond = |tail: f64, of: f64, most: [f64; 2]| {
-            tail * length > most[0] * of || tail > most[1] * of
+            tail * length > most[0] * of + floor * length || tail > most[1] * of + floor
         };
         self.last = rest;
         self.rest = series(&rest, length);
@@ -187,7 +194,7 @@ impl BranchSeries {
         {
             return Pass::Unresolved;
         }
-        if changed <= SETTLED * size && (!first || changed == 0.0) {
+        if changed <= floor && (!first || changed == 0.0) {
             Pass::Settled
         } else {
             Pass::Changed

@@ -95,6 +95,9 @@ impl Flow<'_> {
         self.scratch.clear();
         let speed = self.series.contact(point)[1..].iter().enumerate();
         self.scratch.extend(speed.map(|(n, u)| sign * (n + 1) as f64 * u));
+        if self.series.branches().iter().any(|own| own.point == point && own.begins()) {
+            self.scratch[0] = 0.0;
+        }
         rescale(&mut self.scratch, natural);
         let to = state.mirrored();
         if self.scratch[0] < -AT_REST * self.scratch[1..].iter().map(|a| a.abs()).sum::<f64>() {
