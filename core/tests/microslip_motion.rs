@@ -56,7 +56,11 @@ fn chain(random: &mut Random, symmetric: bool) -> (Model, f64) {
             let grounded = other == one;
             let rows = Mat::from_fn(1, size, |_, j| {
                 let own = f64::from(u8::from(j == one));
-                if grounded { own } else { own - f64::from(u8::from(j == other)) }
+                if grounded {
+                    own
+                } else {
+                    own - f64::from(u8::from(j == other))
+                }
             });
             Contact { law, rows }
         })
@@ -65,7 +69,12 @@ fn chain(random: &mut Random, symmetric: bool) -> (Model, f64) {
     let mut load = |harmonic: usize, share: f64| HarmonicLoad {
         harmonic,
         amplitude: (0..size)
-            .map(|_| c64::from_polar(share * force * random.between(0.0, 1.0), if harmonic == 0 { 0.0 } else { random.between(0.0, 6.0) }))
+            .map(|_| {
+                c64::from_polar(
+                    share * force * random.between(0.0, 1.0),
+                    if harmonic == 0 { 0.0 } else { random.between(0.0, 6.0) },
+                )
+            })
             .collect(),
     };
     let mut loads = vec![load(1, 1.0)];
@@ -100,9 +109,10 @@ fn transients_from_rest_are_those_of_runge_kutta() {
         let exact = run(&model, omega, Scheme::Exact);
         assert_eq!(exact.halt, None, "seed {seed}");
         let steps = run(&model, omega, Scheme::RungeKutta(4096));
-        for (a, b) in
-            [(&exact.trace.displacement, &steps.trace.displacement), (&exact.trace.force, &steps.trace.force)]
-        {
+        for (a, b) in [
+            (&exact.trace.displacement, &steps.trace.displacement),
+            (&exact.trace.force, &steps.trace.force),
+        ] {
             let size = largest(b);
             let apart = a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             assert!(apart < 3e-5 * size, "seed {seed}: {apart:e} of {size:e}");
@@ -125,7 +135,12 @@ fn orbits_close_their_energy_and_agree_with_the_balance() {
         let residual = if seed % 2 == 0 { Residual::Centred } else { Residual::FromRest };
         let began = std::time::Instant::now();
         let orbit = orbit(&model, omega, residual);
-        eprintln!("{seed} {:?} {} {:?}", orbit.response.status, orbit.response.iterations, began.elapsed());
+        eprintln!(
+            "{seed} {:?} {} {:?}",
+            orbit.response.status,
+            orbit.response.iterations,
+            began.elapsed()
+        );
         assert_eq!(orbit.response.status, PointStatus::Converged, "seed {seed}");
         iterations.push(orbit.response.iterations);
         let lost: f64 = orbit.response.contacts.iter().map(|own| own.dissipation).sum();

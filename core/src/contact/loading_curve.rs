@@ -4,6 +4,9 @@ use super::backbone::Backbone;
 use super::loss::Loss;
 use std::sync::Arc;
 
+/// Reversals that a state tells of a contact without sliders, behind its origin.
+pub(crate) const REVERSALS: usize = 12;
+
 /// The force of first loading, and what slip takes off the elastic one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LoadingCurve {

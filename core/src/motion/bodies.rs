@@ -1,7 +1,7 @@
 //! The elements of all contacts, one after the other.
 
-use super::microslip::{Loaded, Microslip, PLACES as REVERSALS};
-use crate::contact::{Bound, ContactLaw, Elastic, PointState, SlipElement, SlipPlane};
+use super::microslip::{Loaded, Microslip};
+use crate::contact::{Bound, ContactLaw, Elastic, PointState, SlipElement, SlipPlane, REVERSALS};
 use crate::model::Model;
 use crate::Error;
 use faer::Mat;
@@ -23,6 +23,11 @@ pub(crate) struct Body {
     pub(crate) remembered: Vec<usize>,
     /// What else it remembers, among all such numbers.
     pub(crate) memory: Range<usize>,
+    /// How many numbers a state tells of it.
+    pub(crate) told: usize,
+    /// Stiffness of a law without sliders that is marched: it remembers the ways from reversal to
+    /// reversal times that, in more places than a state tells.
+    pub(super) ways: Option<f64>,
     /// Its strains among those of the model.
     pub(crate) strains: Range<usize>,
     /// Of the forces that it remembers.
@@ -67,6 +72,10 @@ impl Bodies {
                     let own = own.unwrap_or_else(|| law.with_scaled_stiffness(1.0));
                     let size = own.state_size();
                     bodies.add(contact, range.clone(), Arc::new(Marched(own)), Some(size))?;
+                    if let (Some(curve), Some(body)) = (law.loading(), bodies.all.last_mut()) {
+                        body.told = 1 + REVERSALS;
+                        body.ways = Some(curve.stiffness());
+                    }
                 }
                 None => {
                     let law = law.name().to_owned();
@@ -86,8 +95,10 @@ impl Bodies {
         memory: Option<usize>,
     ) -> Result<(), Error> {
         let (bounds, stiffness) = (law.bounds(), law.stiffness());
-        let held: Vec<bool> =
-            bounds.iter().map(|bound| matches!(bound, Bound::Constant(_) | Bound::Friction { .. })).collect();
+        let held: Vec<bool> = bounds
+            .iter()
+            .map(|bound| matches!(bound, Bound::Constant(_) | Bound::Friction { .. }))
+            .collect();
         let own = Mat::from_fn(held.len(), held.len(), |i, j| {
             if held[i] && held[j] {
                 stiffness[(i, j)]
@@ -108,6 +119,8 @@ impl Bodies {
             remembered: forces.collect(),
             points,
             memory: memories..memories + memory.unwrap_or(0),
+            told: memory.unwrap_or(0),
+            ways: None,
             strains: strains..strains + elastic.rank(),
             elastic,
         });

@@ -46,9 +46,7 @@ fn rule() -> &'static Rule {
         }
         let powers = (0..COUNT)
             .map(|power| {
-                std::array::from_fn(|j| {
-                    (0..COUNT).map(|k| series[k][power] * weight(k, j)).sum()
-                })
+                std::array::from_fn(|j| (0..COUNT).map(|k| series[k][power] * weight(k, j)).sum())
             })
             .collect();
         Rule { points, powers }

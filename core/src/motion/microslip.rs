@@ -5,12 +5,10 @@
 //! passes the reversal before its own, which is forgotten with it (Masing 1926). Force and stiffness are
 //! continuous there.
 
-use crate::contact::{LoadingCurve, PointState, SlipElement};
+use crate::contact::{LoadingCurve, PointState, SlipElement, REVERSALS as PLACES};
 use faer::Mat;
 use std::ops::Range;
 
-/// Reversals of a contact that a given state holds.
-pub(crate) const PLACES: usize = 12;
 /// Distance, relative to the displacements that it is the difference of, that is rounding.
 const ROUNDING: f64 = 1e-12;
 
@@ -99,6 +97,16 @@ impl Branch {
 }
 
 impl Reversals {
+    /// Those of a law that is marched, by its steps: ways times the stiffness.
+    pub(super) fn marched(steps: &[f64], stiffness: f64) -> Self {
+        let mut at = 0.0;
+        let turns = steps.iter().take_while(|step| **step != 0.0).map(|step| {
+            at += step / stiffness;
+            [at, 0.0]
+        });
+        Self { origin: 0.0, turns: turns.collect() }
+    }
+
     /// The branch in a direction.
     pub(super) fn branch(&self, sign: f64) -> Branch {
         match self.turns.last() {
@@ -152,7 +160,12 @@ impl Reversals {
 
     /// What is remembered at a displacement that is reached by given reversals, each as the way from the
     /// one before and the first from the origin; of each reversal kept its number in the list.
-    pub(crate) fn through(own: &Microslip, origin: f64, ways: &[f64], now: f64) -> (Self, Vec<usize>) {
+    pub(crate) fn through(
+        own: &Microslip,
+        origin: f64,
+        ways: &[f64],
+        now: f64,
+    ) -> (Self, Vec<usize>) {
         let mut kept = Self { origin, turns: Vec::new() };
         let (mut numbers, mut at, mut sign) = (Vec::new(), origin, 0.0);
         let mut passed = origin;

@@ -321,7 +321,7 @@ impl ModalSystem {
 
     /// How many numbers the contacts remember.
     pub(crate) fn memories(&self) -> usize {
-        let own = |body: &Body| body.remembered.len() + body.memory.len();
+        let own = |body: &Body| body.remembered.len() + body.told;
         self.bodies.iter().map(own).sum()
     }
 

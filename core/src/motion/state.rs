@@ -1,9 +1,9 @@
 //! The state of a motion: modal displacements and velocities, contact forces.
 
 use super::bodies::Body;
-use super::microslip::{Reversals, PLACES as REVERSALS};
+use super::microslip::Reversals;
 use super::modal_system::{dot, ModalSystem};
-use crate::contact::{Bound, PointState};
+use crate::contact::{Bound, PointState, REVERSALS};
 use crate::error::brief;
 use crate::Error;
 use faer::Mat;
@@ -81,6 +81,19 @@ impl State {
         state.close(system);
         state.press(system);
         state.recall(system, memory);
+        let mut origins = memory;
+        for body in system.bodies() {
+            let (own, rest) = origins.split_at(body.remembered.len() + body.told);
+            origins = rest;
+            if body.ways.is_some() && own[0] != 0.0 {
+                let remedy = "Runge-Kutta steps know no origin but 0; take scheme = \"exact\"";
+                return Err(Error::value(
+                    "state: origin of a contact without sliders",
+                    own[0],
+                    remedy,
+                ));
+            }
+        }
         for point in system.bodies().iter().flat_map(|body| body.remembered.iter().copied()) {
             let plane = system.plane_of(point).map(|plane| system.traction(plane, &state.force));
             let f = plane.unwrap_or(state.force[point]);
@@ -131,9 +144,13 @@ impl State {
     pub(crate) fn recall(&mut self, system: &ModalSystem, mut values: &[f64]) {
         for body in system.bodies() {
             let (forces, rest) = values.split_at(body.remembered.len());
-            let (memory, rest) = rest.split_at(body.memory.len());
+            let (memory, rest) = rest.split_at(body.told);
             body.remembered.iter().zip(forces).for_each(|(&i, f)| self.force[i] = *f);
-            self.memory[body.memory.clone()].copy_from_slice(memory);
+            let own = &mut self.memory[body.memory.clone()];
+            match body.ways {
+                Some(k) => own.iter_mut().zip(&memory[1..]).for_each(|(z, way)| *z = k * way),
+                None => own.copy_from_slice(memory),
+            }
             values = rest;
         }
         self.reverse(system);
@@ -151,8 +168,11 @@ impl State {
     /// Of each contact without sliders, the numbers of the memory that its reversals are made of.
     pub(crate) fn recall_ways(&mut self, system: &ModalSystem, values: &[f64]) -> Vec<Vec<usize>> {
         let mut kept = Vec::new();
-        for ((own, reversals), values) in
-            system.microslips.iter().zip(&mut self.reversals).zip(values.chunks_exact(1 + REVERSALS))
+        for ((own, reversals), values) in system
+            .microslips
+            .iter()
+            .zip(&mut self.reversals)
+            .zip(values.chunks_exact(1 + REVERSALS))
         {
             let now = dot(system.contact_shape(own.point), &self.displacement);
             let numbers;
@@ -241,7 +261,11 @@ impl State {
         }
         for body in system.bodies() {
             values.extend(body.remembered.iter().map(|&i| self.force[i]));
-            values.extend(&memory[body.memory.clone()]);
+            let own = &memory[body.memory.clone()];
+            match body.ways {
+                Some(stiffness) => values.extend(Reversals::marched(own, stiffness).numbers()),
+                None => values.extend(own),
+            }
         }
         values
     }

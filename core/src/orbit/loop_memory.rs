@@ -6,10 +6,9 @@
 //! smooth ones, so that Newton's method closes orbit and memory together. The origin of the first loading says
 //! what elements hold that never slip: the middle of the range, or zero where the motion came from rest.
 
-use crate::contact::{PointState, Residual};
+use crate::contact::{PointState, Residual, REVERSALS};
 use crate::motion::{
     FlowEvent, LinearPhase, LoopDisturbance, Microslip, ModalSystem, State, Transition, Turn,
-    REVERSALS,
 };
 use faer::Mat;
 
@@ -115,7 +114,9 @@ impl LoopMemory {
     pub(super) fn end(&mut self, system: &ModalSystem, state: &State) -> Option<Vec<f64>> {
         let mut unknowns = Vec::with_capacity(Self::places(system));
         self.lists.clear();
-        for (own, (turns, scale)) in system.microslips().iter().zip(self.turns.iter().zip(&self.scale)) {
+        for (own, (turns, scale)) in
+            system.microslips().iter().zip(self.turns.iter().zip(&self.scale))
+        {
             let shape = system.contact_shape(own.point).iter();
             let now: f64 = shape.zip(&state.displacement).map(|(b, x)| b * x).sum();
             let list = self.list(turns, now)?;
@@ -198,7 +199,9 @@ impl LoopMemory {
             let scale = self.scale[number];
             let zero = vec![0.0; all];
             let origin: Vec<f64> = match list.outermost {
-                Some([a, b]) => turns[a].iter().zip(&turns[b]).map(|(a, b)| 0.5 * (a + b)).collect(),
+                Some([a, b]) => {
+                    turns[a].iter().zip(&turns[b]).map(|(a, b)| 0.5 * (a + b)).collect()
+                }
                 None => zero,
             };
             let mut from = &origin;

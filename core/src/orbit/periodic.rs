@@ -96,7 +96,8 @@ impl<'a> PeriodicOrbits<'a> {
         };
         let system = Arc::new(ModalSystem::new(with_history.as_ref().unwrap_or(model))?);
         Error::check_dofs(observe, system.modes())?;
-        if let (Residual::Value(value), false) = (settings.residual, system.microslips().is_empty()) {
+        if let (Residual::Value(value), false) = (settings.residual, system.microslips().is_empty())
+        {
             let remedy = "exact orbits of contacts without sliders take 'centred' or 'from_rest'";
             return Err(Error::value("residual", value, remedy));
         }

@@ -1,10 +1,10 @@
 //! The state at the start of the period of a harmonic balance.
 
 use crate::balance::Point;
-use crate::contact::{Motion, Residual};
+use crate::contact::{Motion, Residual, REVERSALS};
 use crate::fourier::{Harmonics, SampleTable};
 use crate::model::Model;
-use crate::motion::{ModalSystem, State, REVERSALS};
+use crate::motion::{ModalSystem, State};
 use faer::c64;
 
 /// State at the start of the period of a harmonic balance of all DOFs.
