@@ -205,9 +205,7 @@ def test_exact_orbits_of_a_chain_are_those_of_the_balance():
         np.testing.assert_allclose(found, expected, rtol=1e-6)
         found, expected = (result.slip_fraction(contact) for result in (balance, exact))
         np.testing.assert_allclose(found, expected, rtol=1e-5)
-    energy = exact.energy
-    lost = energy.viscous + energy.friction
-    np.testing.assert_allclose(energy.input, lost, rtol=1e-9)
+    assert np.abs(exact.energy.imbalance).max() < 1e-9
     certified = ss.certify(ss.forced_response(own, [omega], 7), points=1)
     assert certified.certificate is not None
 
@@ -253,7 +251,7 @@ def test_exact_transients_are_those_of_fine_steps():
 def test_a_free_motion_dies_away():
     own = ss.Model(structure(), [iwan()], [])
     fate = ss.classify(own, {"a": 1e-3}, periods=200)
-    assert fate.reason.name.lower() in ("passive", "stuck")
+    assert fate.motion == "decays"
 
 
 def test_exact_cycles_and_waves_refuse_it_by_name():
