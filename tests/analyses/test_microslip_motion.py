@@ -197,7 +197,8 @@ def test_exact_orbits_of_a_chain_are_those_of_the_balance():
     own, omega = chain()
     balance = ss.forced_response(own, [omega], 41)
     exact = ss.exact_response(own, [omega])
-    assert exact.converged.all() and (exact.stability == "stable").all()
+    assert exact.converged.all()
+    assert (exact.stability == "stable").all()
     for dof in "abcd":
         np.testing.assert_allclose(balance.amplitude(dof), exact.amplitude(dof), rtol=1e-7)
     for contact in range(3):
@@ -239,7 +240,8 @@ def test_exact_transients_are_those_of_fine_steps():
     for steps in (512, 2048):
         fine = ss.transient(own, omega, 6, scheme="rk4", steps=steps, samples=64)
         apart.append(np.abs(exact.displacement("b") - fine.displacement("b")).max())
-    assert apart[1] < 1e-6 * np.abs(exact.displacement("b")).max() and apart[1] < apart[0] / 4
+    assert apart[1] < 1e-6 * np.abs(exact.displacement("b")).max()
+    assert apart[1] < apart[0] / 4
     # Either scheme goes on where the other has come to.
     half = ss.transient(own, omega, 3, scheme="rk4", steps=2048, samples=64)
     on = ss.transient(own, omega, 3, start=half.final, samples=64)
@@ -269,7 +271,8 @@ def test_exact_cycles_and_waves_refuse_it_by_name():
     with pytest.raises(ss.ModelError, match="the law iwan has no sliders"):
         ss.limit_cycles(own, negative_damping=-2.0 * np.eye(2), mode=0, method="exact")
     with pytest.raises(ss.ModelError, match="residual"):
-        ss.exact_response(model(iwan(), more=[ss.Force("a", 1.0, harmonic=2)]), [100.0], residual=0.3)
+        own = model(iwan(), more=[ss.Force("a", 1.0, harmonic=2)])
+        ss.exact_response(own, [100.0], residual=0.3)
 
 
 def test_results_go_to_files_and_back(tmp_path):
