@@ -270,8 +270,8 @@ def test_exact_cycles_and_waves_refuse_it_by_name():
     own = ss.Model(structure(), [iwan()], [])
     with pytest.raises(ss.ModelError, match="the law iwan has no sliders"):
         ss.limit_cycles(own, negative_damping=-2.0 * np.eye(2), mode=0, method="exact")
+    own = model(iwan(), more=[ss.Force("a", 1.0, harmonic=2)])
     with pytest.raises(ss.ModelError, match="residual"):
-        own = model(iwan(), more=[ss.Force("a", 1.0, harmonic=2)])
         ss.exact_response(own, [100.0], residual=0.3)
 
 
