@@ -253,7 +253,7 @@ def test_exact_transients_are_those_of_fine_steps():
 def test_a_free_motion_dies_away():
     own = ss.Model(structure(), [iwan()], [])
     fate = ss.classify(own, {"a": 1e-3}, periods=200)
-    assert fate.motion == "decays"
+    assert fate.motion == "decaying"
 
 
 def test_exact_cycles_and_waves_refuse_it_by_name():
