@@ -254,7 +254,7 @@ mod tests {
 
     #[test]
     fn the_rest_of_tanh_keeps_its_digits() {
-        for z in [1e-6, 1e-3, 0.1, 0.49] {
+        for z in [1e-6_f64, 1e-3, 0.1, 0.49] {
             let series = z * z * z / 3.0 * (1.0 - 0.4 * z * z + 17.0 / 105.0 * z.powi(4));
             assert!((rest_of_tanh(z) - series).abs() <= 0.08 * z.powi(9) + 1e-15 * series);
         }
