@@ -35,7 +35,7 @@ MEANT = "The dissertation names the subject and computes nothing: system and par
         MEANT,
         "All three have the same stiffness at rest, 2.4e7 N/m, and the same largest force, "
         "246.048 N; the Iwan model has chi = -0.5 and beta = 0.",
-        "Microslip laws have no events for exact orbits: their peaks are those of 15 harmonics.",
+        "Peaks of microslip laws are those of 15 harmonics.",
     ),
 )
 def microslip(resolution: Resolution) -> Numbers:

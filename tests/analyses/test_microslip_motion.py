@@ -193,9 +193,86 @@ def test_limit_cycles_balance_power():
         assert lost == pytest.approx(fed, rel=0.02)
 
 
-def test_exact_orbits_refuse_it_by_name():
-    with pytest.raises(ss.ModelError, match="iwan"):
-        ss.exact_response(model(iwan()), [100.0])
+def test_exact_orbits_of_a_chain_are_those_of_the_balance():
+    own, omega = chain()
+    balance = ss.forced_response(own, [omega], 41)
+    exact = ss.exact_response(own, [omega])
+    assert exact.converged.all()
+    assert (exact.stability == "stable").all()
+    for dof in "abcd":
+        np.testing.assert_allclose(balance.amplitude(dof), exact.amplitude(dof), rtol=1e-7)
+    for contact in range(3):
+        found, expected = (result.dissipation(contact) for result in (balance, exact))
+        np.testing.assert_allclose(found, expected, rtol=1e-6)
+        found, expected = (result.slip_fraction(contact) for result in (balance, exact))
+        np.testing.assert_allclose(found, expected, rtol=1e-5)
+    assert np.abs(exact.energy.imbalance).max() < 1e-9
+    certified = ss.certify(ss.forced_response(own, [omega], 7), points=1)
+    assert certified.certificate is not None
+
+
+@pytest.mark.parametrize("residual", ["centred", "from_rest"])
+@pytest.mark.parametrize(
+    "law",
+    [
+        iwan(chi=-0.93, beta=0.3),
+        exponential(),
+        ss.Masing("a", **LAW, backbone="shear-layer", shear_lag=1.5),
+        ss.Masing("a", backbone=([1e-3, 2e-3, 5e-3], [3.0, 4.0, 4.5])),
+    ],
+)
+def test_exact_orbits_of_a_motion_without_symmetry(law, residual):
+    more = [ss.Force("a", 2.0, harmonic=0), ss.Force("b", 1.0, harmonic=2)]
+    own = model(law, more=more, damping=0.01)
+    balance = ss.forced_response(own, [104.0], 41, residual=residual)
+    exact = ss.exact_response(own, [104.0], residual=residual)
+    size = np.abs(balance.coefficients("a")).max()
+    apart = np.abs(balance.coefficients("a")[:, :5] - exact.coefficients("a")[:, :5]).max()
+    assert apart < 1e-6 * size
+    later = ss.transient(own, 104.0, 2, start=exact.state(0))
+    assert later.change.max() < 1e-9
+
+
+def test_exact_transients_are_those_of_fine_steps():
+    own, omega = chain()
+    exact = ss.transient(own, omega, 6, samples=64)
+    apart = []
+    for steps in (512, 2048):
+        fine = ss.transient(own, omega, 6, scheme="rk4", steps=steps, samples=64)
+        apart.append(np.abs(exact.displacement("b") - fine.displacement("b")).max())
+    assert apart[1] < 1e-6 * np.abs(exact.displacement("b")).max()
+    assert apart[1] < apart[0] / 4
+    # Either scheme goes on where the other has come to.
+    half = ss.transient(own, omega, 3, scheme="rk4", steps=2048, samples=64)
+    on = ss.transient(own, omega, 3, start=half.final, samples=64)
+    np.testing.assert_allclose(
+        on.displacement("b"), exact.displacement("b")[3 * 64 :], atol=1e-6 * 1e-2
+    )
+
+
+def test_a_free_motion_dies_away():
+    own = ss.Model(structure(), [iwan()], [])
+    fate = ss.classify(own, {"a": 1e-3}, periods=200)
+    assert fate.motion == "decaying"
+
+
+def test_exact_cycles_and_waves_refuse_it_by_name():
+    disk = ss.BladedDisk(
+        structure(),
+        sectors=6,
+        couplings=[ss.Coupling("b", stiffness=500.0)],
+        contacts=[iwan()],
+        forces=[ss.Force("b", 2.0)],
+        engine_order=2,
+    )
+    with pytest.raises(ss.ModelError, match="the law iwan has no sliders"):
+        ss.exact_response(disk, [100.0])
+    own = ss.Model(structure(), [iwan()], [])
+    with pytest.raises(ss.ModelError, match="the law iwan has no sliders"):
+        ss.limit_cycles(own, negative_damping=-2.0 * np.eye(2), mode=0, method="exact")
+    own = model(iwan(), more=[ss.Force("a", 1.0, harmonic=2)])
+    with pytest.raises(ss.ModelError, match="residual"):
+        ss.exact_response(own, [100.0], residual=0.3)
 
 
 def test_results_go_to_files_and_back(tmp_path):

@@ -212,6 +212,7 @@ impl ContactLaw for Aft<Box<dyn ContactLaw>> {
         stuck_load(residual: Residual, low: f64, high: f64) -> Option<[f64; 3]>;
         parameters() -> Vec<Parameter>;
         elements() -> Option<Vec<Element>>;
+        loading() -> Option<super::LoadingCurve>;
         describing(amplitude: f64) -> Option<Describing>;
     }
 

@@ -21,10 +21,7 @@ pub enum Backbone {
     Exponential,
     /// A bar on a layer of distributed friction, pulled at one end and free at the other (Menq, Bielak
     /// and Griffin 1986): `shear_lag` is λL, with `λ = √(k/EA)`.
-    ShearLayer {
-        /// λL.
-        shear_lag: f64,
-    },
+    ShearLayer(Layer),
     /// The four-parameter model of Segalman (2005): a power law of slip limits and one limit that many
     /// elements share.
     Iwan {
@@ -59,7 +56,7 @@ impl Backbone {
                 "must be positive: sqrt(k/EA) L of the layer; a rigid bar is a Jenkins element";
             return Err(Error::value("masing: shear_lag", shear_lag, remedy));
         }
-        Ok(Self::ShearLayer { shear_lag })
+        Ok(Self::ShearLayer(Layer::new(shear_lag)))
     }
 
     /// Segalman's model.
@@ -139,9 +136,23 @@ impl Backbone {
     pub(super) fn loss(&self, x: f64) -> Loss {
         match self {
             Self::Exponential => exponential(x),
-            Self::ShearLayer { shear_lag } => Layer::new(*shear_lag).loss(x),
+            Self::ShearLayer(layer) => layer.loss(x),
             Self::Iwan { chi, beta } => iwan(*chi, *beta, x),
             Self::Table(table) => table.loss(x),
+        }
+    }
+
+    /// The loss by the formula that holds up to the first break at or behind `piece` breaks: beyond it
+    /// the formula goes on as far as it has a meaning.
+    pub(super) fn loss_on(&self, piece: usize, x: f64) -> Loss {
+        match self {
+            Self::Iwan { chi, beta } if piece == 0 => {
+                let share = x / gross_slip(*chi, *beta);
+                power_loss(*chi, *beta, share)
+            }
+            Self::Table(table) => table.on_row(piece, x),
+            Self::ShearLayer(_) if piece == 0 => Loss::default(),
+            _ => self.loss(x),
         }
     }
 
@@ -149,10 +160,7 @@ impl Backbone {
     pub(super) fn breaks(&self) -> Vec<f64> {
         match self {
             Self::Exponential => Vec::new(),
-            Self::ShearLayer { shear_lag } => {
-                let layer = Layer::new(*shear_lag);
-                vec![layer.begin, layer.end]
-            }
+            Self::ShearLayer(layer) => vec![layer.begin, layer.end],
             Self::Iwan { chi, beta } => vec![gross_slip(*chi, *beta)],
             Self::Table(table) => table.x[1..].to_vec(),
         }
@@ -173,13 +181,13 @@ impl Backbone {
 
     /// Whether λ' has a square root before the last of its breaks.
     pub(super) fn root_at_end(&self) -> bool {
-        matches!(self, Self::ShearLayer { .. })
+        matches!(self, Self::ShearLayer(_))
     }
 
     /// Names and values of its numbers.
     pub(super) fn numbers(&self) -> Vec<(&'static str, f64)> {
         match self {
-            Self::ShearLayer { shear_lag } => vec![("shear_lag", *shear_lag)],
+            Self::ShearLayer(layer) => vec![("shear_lag", layer.lag)],
             Self::Iwan { chi, beta } => vec![("chi", *chi), ("beta", *beta)],
             Self::Exponential | Self::Table(_) => Vec::new(),
         }
@@ -188,7 +196,7 @@ impl Backbone {
     /// The same shape with another value of one of its numbers.
     pub(super) fn with_number(&self, index: usize, value: f64) -> Result<Self, Error> {
         match self {
-            Self::ShearLayer { .. } => Self::shear_layer(value),
+            Self::ShearLayer(_) => Self::shear_layer(value),
             Self::Iwan { beta, .. } if index == 0 => Self::iwan(value, *beta),
             Self::Iwan { chi, .. } => Self::iwan(*chi, value),
             Self::Exponential | Self::Table(_) => Ok(self.clone()),
@@ -198,7 +206,7 @@ impl Backbone {
     /// Derivative of φ in one of its numbers.
     pub(super) fn by_number(&self, index: usize, x: f64) -> f64 {
         match self {
-            Self::ShearLayer { shear_lag } => Layer::new(*shear_lag).by_shear_lag(x),
+            Self::ShearLayer(layer) => layer.by_shear_lag(x),
             Self::Iwan { chi, beta } if x > 0.0 && x < gross_slip(*chi, *beta) => {
                 let (chi, beta) = (*chi, *beta);
                 let rest = beta * (chi + 2.0) + chi + 1.0;
@@ -239,10 +247,7 @@ fn gross_slip(chi: f64, beta: f64) -> f64 {
 /// `λ' = (x/x_max)^(χ+1)/(1 + β)` up to gross slip, 1 beyond.
 fn iwan(chi: f64, beta: f64, x: f64) -> Loss {
     let end = gross_slip(chi, beta);
-    let share = (x / end).min(1.0);
-    let slope = share.powf(chi + 1.0) / (1.0 + beta);
-    let value = slope * share * end / (chi + 2.0);
-    let inner = Loss { integral: value * share * end / (chi + 3.0), value, slope };
+    let inner = power_loss(chi, beta, (x / end).min(1.0));
     if x < end {
         inner
     } else {
@@ -250,9 +255,20 @@ fn iwan(chi: f64, beta: f64, x: f64) -> Loss {
     }
 }
 
+/// What that is at a share of x_max by its power law.
+fn power_loss(chi: f64, beta: f64, share: f64) -> Loss {
+    let end = gross_slip(chi, beta);
+    let slope = share.powf(chi + 1.0) / (1.0 + beta);
+    let value = slope * share * end / (chi + 2.0);
+    Loss { integral: value * share * end / (chi + 3.0), value, slope }
+}
+
 impl Table {
     fn loss(&self, x: f64) -> Loss {
-        let row = self.x.partition_point(|own| *own <= x).max(1) - 1;
+        self.on_row(self.x.partition_point(|own| *own <= x).max(1) - 1, x)
+    }
+
+    fn on_row(&self, row: usize, x: f64) -> Loss {
         self.loss[row].straight(self.slope[row], x - self.x[row])
     }
 }

@@ -4,6 +4,7 @@
 //! which is what slip takes off it. The stuck structure carries D, so that the balance has to
 //! find q alone; it vanishes while a contact sticks.
 
+use super::loading_curve::LoadingCurve;
 use super::point_state::Phase;
 use super::slip_element::Element;
 use super::{AssumedStart, Describing, Held, Parameter, Residual};
@@ -225,6 +226,12 @@ pub trait ContactLaw: Send + Sync + std::fmt::Debug {
 
     /// The elements whose events exact motions are followed by, if the law is made of such.
     fn elements(&self) -> Option<Vec<Element>> {
+        None
+    }
+
+    /// The force of first loading of a law of one displacement that slips little by little, if it follows
+    /// by Masing's rule and return-point memory: exact motions go from reversal to reversal.
+    fn loading(&self) -> Option<LoadingCurve> {
         None
     }
 

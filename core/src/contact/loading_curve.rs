@@ -4,9 +4,12 @@ use super::backbone::Backbone;
 use super::loss::Loss;
 use std::sync::Arc;
 
+/// Reversals that a state tells of a contact without sliders, behind its origin.
+pub(crate) const REVERSALS: usize = 12;
+
 /// The force of first loading, and what slip takes off the elastic one.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct LoadingCurve {
+pub struct LoadingCurve {
     /// k [N/m].
     pub(super) stiffness: f64,
     /// S \[N\].
@@ -34,8 +37,33 @@ impl LoadingCurve {
         Loss { integral: s / k * s * own.integral, value: s * own.value, slope: k * own.slope }
     }
 
+    /// Stiffness at rest [N/m].
+    pub(crate) fn stiffness(&self) -> f64 {
+        self.stiffness
+    }
+
+    /// Force that is never exceeded \[N\].
+    pub(crate) fn limit(&self) -> f64 {
+        if self.stiffness == 0.0 {
+            0.0
+        } else {
+            self.slip_force
+        }
+    }
+
+    /// [`Self::loss`] and its slope by the formula that holds behind so many breaks.
+    pub(crate) fn loss_on(&self, piece: usize, u: f64) -> [f64; 2] {
+        let (k, s) = (self.stiffness, self.slip_force);
+        if k == 0.0 || s == 0.0 || s == f64::INFINITY {
+            let loss = self.loss(u);
+            return [loss.value, loss.slope];
+        }
+        let own = self.backbone.loss_on(piece, self.x(u));
+        [s * own.value, k * own.slope]
+    }
+
     /// Displacements where the backbone is not analytic \[m\].
-    pub(super) fn breaks(&self) -> Vec<f64> {
+    pub(crate) fn breaks(&self) -> Vec<f64> {
         let unit = self.slip_force / self.stiffness;
         if unit > 0.0 && unit.is_finite() {
             self.backbone.breaks().iter().map(|x| x * unit).collect()

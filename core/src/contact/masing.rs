@@ -233,6 +233,10 @@ impl ContactLaw for Masing {
         Some(self)
     }
 
+    fn loading(&self) -> Option<LoadingCurve> {
+        Some(self.curve.clone())
+    }
+
     /// The first harmonic of a harmonic motion, and its derivative, by the integrals of any motion.
     fn describing(&self, amplitude: f64) -> Option<Describing> {
         static TABLE: OnceLock<SampleTable> = OnceLock::new();

@@ -37,6 +37,8 @@ pub enum Bound {
         /// What of N the structure does not feel \[N\].
         balanced: f64,
     },
+    /// A force that follows from the displacement and the reversals before, and stays within a limit.
+    Backbone(f64),
 }
 
 /// Two points of an element whose forces are one traction: the length of the vector is bounded by the

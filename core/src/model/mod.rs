@@ -14,7 +14,7 @@ pub(crate) use modal_basis::{ModalBases, ModalBasis};
 pub use resonances::Resonance;
 pub use variation::{Change, ParameterMode, Variation};
 
-use crate::contact::{Aft, ContactLaw, Parameter};
+use crate::contact::{Aft, ContactLaw, Parameter, REVERSALS};
 use crate::structure::{
     Compliance, CyclicStructure, HarmonicLoad, Ports, Ring, RingCoupling, RingSector, Structure,
 };
@@ -243,7 +243,11 @@ impl Model {
     /// Number of numbers in a state in time: displacements, velocities and what the laws remember.
     #[must_use]
     pub fn states(&self) -> usize {
-        2 * self.structure.dofs() + self.laws.iter().map(|law| law.state_size()).sum::<usize>()
+        let told = |law: &Box<dyn ContactLaw>| match law.loading() {
+            Some(_) => 1 + REVERSALS,
+            None => law.state_size(),
+        };
+        2 * self.structure.dofs() + self.laws.iter().map(told).sum::<usize>()
     }
 
     /// Rows of B that belong to each contact.

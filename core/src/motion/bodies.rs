@@ -1,6 +1,7 @@
 //! The elements of all contacts, one after the other.
 
-use crate::contact::{Bound, ContactLaw, Elastic, PointState, SlipElement, SlipPlane};
+use super::microslip::{Loaded, Microslip};
+use crate::contact::{Bound, ContactLaw, Elastic, PointState, SlipElement, SlipPlane, REVERSALS};
 use crate::model::Model;
 use crate::Error;
 use faer::Mat;
@@ -22,6 +23,11 @@ pub(crate) struct Body {
     pub(crate) remembered: Vec<usize>,
     /// What else it remembers, among all such numbers.
     pub(crate) memory: Range<usize>,
+    /// How many numbers a state tells of it.
+    pub(crate) told: usize,
+    /// Stiffness of a law without sliders that is marched: it remembers the ways from reversal to
+    /// reversal times that, in more places than a state tells.
+    pub(super) ways: Option<f64>,
     /// Its strains among those of the model.
     pub(crate) strains: Range<usize>,
     /// Of the forces that it remembers.
@@ -32,13 +38,15 @@ pub(crate) struct Body {
 pub(super) struct Bodies {
     pub(super) all: Vec<Body>,
     pub(super) components: Vec<usize>,
+    /// Those without sliders.
+    pub(super) microslips: Vec<Microslip>,
 }
 
 impl Bodies {
     /// Elements that a motion can be followed by from event to event; where `marched`, laws that
     /// have none take part as a whole, by their return maps.
     pub(super) fn new(model: &Model, marched: bool) -> Result<Self, Error> {
-        let mut bodies = Self { all: Vec::new(), components: Vec::new() };
+        let mut bodies = Self { all: Vec::new(), components: Vec::new(), microslips: Vec::new() };
         for (contact, (law, range)) in model.laws().iter().zip(model.points()).enumerate() {
             match law.elements() {
                 Some(elements) => {
@@ -47,11 +55,27 @@ impl Bodies {
                         bodies.add(contact, own, element.law, None)?;
                     }
                 }
+                None if !marched && law.loading().is_some() => {
+                    let Some(curve) = law.loading() else { continue };
+                    let own = Arc::new(Loaded(curve.clone()));
+                    bodies.add(contact, range.clone(), own, Some(1 + REVERSALS))?;
+                    let Some(body) = bodies.all.last() else { continue };
+                    bodies.microslips.push(Microslip {
+                        point: body.points.start,
+                        memory: body.memory.clone(),
+                        breaks: curve.breaks(),
+                        curve,
+                    });
+                }
                 None if marched => {
                     let own = law.with_memory(PLACES);
                     let own = own.unwrap_or_else(|| law.with_scaled_stiffness(1.0));
                     let size = own.state_size();
                     bodies.add(contact, range.clone(), Arc::new(Marched(own)), Some(size))?;
+                    if let (Some(curve), Some(body)) = (law.loading(), bodies.all.last_mut()) {
+                        body.told = 1 + REVERSALS;
+                        body.ways = Some(curve.stiffness());
+                    }
                 }
                 None => {
                     let law = law.name().to_owned();
@@ -71,8 +95,10 @@ impl Bodies {
         memory: Option<usize>,
     ) -> Result<(), Error> {
         let (bounds, stiffness) = (law.bounds(), law.stiffness());
-        let held: Vec<bool> =
-            bounds.iter().map(|bound| !matches!(bound, Bound::Unilateral { .. })).collect();
+        let held: Vec<bool> = bounds
+            .iter()
+            .map(|bound| matches!(bound, Bound::Constant(_) | Bound::Friction { .. }))
+            .collect();
         let own = Mat::from_fn(held.len(), held.len(), |i, j| {
             if held[i] && held[j] {
                 stiffness[(i, j)]
@@ -93,6 +119,8 @@ impl Bodies {
             remembered: forces.collect(),
             points,
             memory: memories..memories + memory.unwrap_or(0),
+            told: memory.unwrap_or(0),
+            ways: None,
             strains: strains..strains + elastic.rank(),
             elastic,
         });

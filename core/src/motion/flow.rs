@@ -7,7 +7,8 @@
 //! vanishes. All of these are zeros of polynomials, located to rounding.
 
 use super::flow_event::{Event, FlowEvent, FlowSegment, Halt};
-use super::modal_system::{ContactState, ModalSystem};
+use super::microslip::Turn;
+use super::modal_system::{dot, ContactState, ModalSystem};
 use super::power_series::PowerSeries;
 use super::state::State;
 use crate::contact::{Bound, PointState};
@@ -145,7 +146,10 @@ impl<'a> Flow<'a> {
                 return Err(Halt::Contradiction);
             }
             let speed = self.system.contact_displacement(&state.velocity);
-            self.change(state, &speed, point, to);
+            let turn = self.turn(state, point, to);
+            if turn.is_none() {
+                self.change(state, &speed, point, to);
+            }
             let after = ContactState::new(self.system, &state.points);
             // Friction comes and goes with the normal force.
             let mut before = &regime;
@@ -156,6 +160,7 @@ impl<'a> Flow<'a> {
                     speed: &speed,
                     before,
                     after: &after,
+                    turn,
                 });
                 before = &after;
             }
@@ -168,6 +173,24 @@ impl<'a> Flow<'a> {
         self.series.state_at(length, self.system, state.parts());
         state.press(self.system);
         state.time += length / self.series.rate();
+        for (own, reversals) in self.system.microslips.iter().zip(&state.reversals) {
+            let u = dot(self.system.contact_shape(own.point), &state.displacement);
+            let sign = state.points[own.point].sign();
+            state.force[own.point] = reversals.force(own, sign, u);
+        }
+    }
+
+    /// A contact without sliders turns round, closes a loop, or passes a break of its backbone.
+    fn turn(&self, state: &mut State, point: usize, to: PointState) -> Option<(usize, Turn)> {
+        let number = self.system.microslips.iter().position(|own| own.point == point)?;
+        let own = &self.system.microslips[number];
+        let u = dot(self.system.contact_shape(point), &state.displacement);
+        let (sign, reversals) = (state.points[point].sign(), &mut state.reversals[number]);
+        if to == state.points[point] {
+            return Some((number, reversals.close(sign, u)));
+        }
+        state.points[point] = to;
+        Some((number, reversals.reverse(own, sign, u)))
     }
 
     /// The points that change with one.

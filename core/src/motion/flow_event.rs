@@ -1,5 +1,6 @@
 //! What an observer of the exact flow sees: stretches of the motion, and the events between them.
 
+use super::microslip::Turn;
 use super::modal_system::ContactState;
 use super::power_series::PowerSeries;
 use crate::contact::PointState;
@@ -51,6 +52,8 @@ pub enum FlowEvent<'a> {
         before: &'a ContactState,
         /// After it.
         after: &'a ContactState,
+        /// Of a contact without sliders, by its number, what the event does to its reversals.
+        turn: Option<(usize, Turn)>,
     },
 }
 

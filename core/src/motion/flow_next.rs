@@ -30,6 +30,9 @@ impl Flow<'_> {
                 _ => self.ends_to_slide(plane, natural, length),
             };
         }
+        if let Bound::Backbone(_) = self.system.bounds[point] {
+            return self.turns(point, state, natural, length);
+        }
         let (constant, friction) = match self.system.bounds[point] {
             Bound::Constant(limit) if limit > 0.0 && limit.is_finite() => (limit, None),
             Bound::Friction { friction, normal } if state != PointState::Open => {
@@ -70,6 +73,41 @@ impl Flow<'_> {
             }
         }
         first
+    }
+
+    /// Whether a contact without sliders turns round, or goes on along another formula.
+    fn turns(&mut self, point: usize, state: PointState, natural: f64, length: f64) -> Next {
+        let sign = state.sign();
+        let (mut first, mut window) = (Next::Stay, length);
+        for [target, near] in self.series.targets(self.system, point) {
+            self.scratch.clear();
+            self.scratch.extend(self.series.contact(point).iter().map(|u| -sign * u));
+            self.scratch[0] += sign * target;
+            if self.scratch[0] <= near {
+                return Next::Now(state);
+            }
+            rescale(&mut self.scratch, window);
+            if let Some(share) = first_zero(&self.scratch) {
+                window *= share;
+                first = Next::At(window, state);
+            }
+        }
+        self.scratch.clear();
+        let speed = self.series.contact(point)[1..].iter().enumerate();
+        self.scratch.extend(speed.map(|(n, u)| sign * (n + 1) as f64 * u));
+        if self.series.branches().iter().any(|own| own.point == point && own.begins()) {
+            self.scratch[0] = 0.0;
+        }
+        rescale(&mut self.scratch, natural);
+        let to = state.mirrored();
+        if self.scratch[0] < -AT_REST * self.scratch[1..].iter().map(|a| a.abs()).sum::<f64>() {
+            return Next::Now(to);
+        }
+        match self.leaves(window / natural, 0.0) {
+            Some(0.0) => Next::Now(to),
+            Some(share) => Next::At(share * natural, to),
+            None => first,
+        }
     }
 
     /// Whether the slip velocity at hand vanishes.

@@ -2,6 +2,7 @@
 //! derivative.
 
 use super::flow_event::{Event, FlowEvent};
+use super::microslip::Turn;
 use super::modal_system::{ContactState, ModalSystem};
 use super::power_series::PowerSeries;
 use crate::contact::PointState;
@@ -15,6 +16,8 @@ pub(crate) struct LinearPhase {
     pub(super) onset: Option<Onset>,
     /// Of a stretch in which contacts slide in a plane, its series and its length in τ.
     pub(super) slide: Option<(PowerSeries, f64)>,
+    /// What happens at its end to the reversals of contacts without sliders, by their numbers.
+    pub(super) turns: Vec<(usize, Turn)>,
 }
 
 /// What an event at a point does to the derivative of the forces.
@@ -40,7 +43,8 @@ impl LinearPhase {
                 Some(phase)
                     if phase.onset.is_none()
                         && phase.slide.is_none()
-                        && !segment.series.slides_in_a_plane()
+                        && phase.turns.is_empty()
+                        && !segment.series.is_nonlinear()
                         && phase.regime.points == segment.regime.points =>
                 {
                     phase.duration += segment.duration();
@@ -51,8 +55,19 @@ impl LinearPhase {
                     onset: None,
                     slide: segment
                         .series
-                        .slides_in_a_plane()
+                        .is_nonlinear()
                         .then(|| (segment.series.clone(), segment.length)),
+                    turns: Vec::new(),
+                }),
+            },
+            FlowEvent::Event { before, turn: Some(turn), .. } => match phases.last_mut() {
+                Some(phase) => phase.turns.push(*turn),
+                None => phases.push(Self {
+                    regime: (*before).clone(),
+                    duration: 0.0,
+                    onset: None,
+                    slide: None,
+                    turns: vec![*turn],
                 }),
             },
             // Changes before the first segment find the states to begin with.
@@ -62,7 +77,7 @@ impl LinearPhase {
             // What slides in a plane says itself what remains of a disturbance, and nothing jumps where
             // it comes to rest.
             FlowEvent::Event { event, .. } if system.plane_of(event.point).is_some() => {}
-            FlowEvent::Event { event, speed, before, after } => {
+            FlowEvent::Event { event, speed, before, after, .. } => {
                 let rate = |regime: &ContactState, i: usize| -> f64 {
                     speed.iter().enumerate().map(|(j, v)| regime.tangent[(i, j)] * v).sum()
                 };
@@ -93,7 +108,8 @@ impl LinearPhase {
                     }
                     _ => {
                         let regime = (*before).clone();
-                        phases.push(Self { regime, duration: 0.0, onset, slide: None });
+                        let (slide, turns) = (None, Vec::new());
+                        phases.push(Self { regime, duration: 0.0, onset, slide, turns });
                     }
                 }
             }

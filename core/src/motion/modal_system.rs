@@ -2,6 +2,7 @@
 
 use super::bodies::{Bodies, Body};
 use super::damping::Damping;
+use super::microslip::Microslip;
 use crate::contact::{Bound, PointState, PointSummary, SlipPlane};
 use crate::model::Model;
 use crate::structure::{modes, ModalDamping, RealModes};
@@ -36,6 +37,8 @@ pub struct ModalSystem {
     pub(super) normals: Vec<usize>,
     /// Pairs of points that slip in a plane.
     pub(super) planes: Vec<SlipPlane>,
+    /// Contacts without sliders.
+    pub(super) microslips: Vec<Microslip>,
     /// The elements of the contacts.
     bodies: Vec<Body>,
 }
@@ -90,6 +93,7 @@ impl ModalSystem {
             planes: bodies.planes(),
             bounds: bodies.bounds(),
             components: bodies.components,
+            microslips: bodies.microslips,
             bodies: bodies.all,
             omega_squared: modes.omega_squared,
             shapes: modes.shapes,
@@ -117,6 +121,7 @@ impl ModalSystem {
             planes: bodies.planes(),
             bounds: bodies.bounds(),
             components: bodies.components,
+            microslips: bodies.microslips,
             bodies: bodies.all,
             ..self.clone()
         })
@@ -316,8 +321,30 @@ impl ModalSystem {
 
     /// How many numbers the contacts remember.
     pub(crate) fn memories(&self) -> usize {
-        let own = |body: &Body| body.remembered.len() + body.memory.len();
+        let own = |body: &Body| body.remembered.len() + body.told;
         self.bodies.iter().map(own).sum()
+    }
+
+    /// Contacts without sliders.
+    pub(crate) fn microslips(&self) -> &[Microslip] {
+        &self.microslips
+    }
+
+    /// Whether a point has no slider.
+    pub(crate) fn is_microslip(&self, point: usize) -> bool {
+        self.microslips.iter().any(|own| own.point == point)
+    }
+
+    /// Refuses contacts without sliders.
+    ///
+    /// # Errors
+    /// The first of them.
+    pub(crate) fn require_sliders(&self, model: &Model) -> Result<(), Error> {
+        let Some(own) = self.microslips.first() else { return Ok(()) };
+        let contact = self.bodies.iter().find(|body| body.points.contains(&own.point));
+        let contact = contact.map_or(0, |body| body.contact);
+        let law = model.laws()[contact].name().to_owned();
+        Err(Error::NoSliders { contact: contact + 1, law })
     }
 
     /// The elements of the contacts.

@@ -3,6 +3,7 @@
 use super::flow::Flow;
 use super::flow_event::{Event, FlowEvent, FlowSegment, Halt};
 use super::history::{History, Trace, TransientSettings};
+use super::microslip::Turn;
 use super::modal_system::{dot, ModalSystem};
 use super::polynomial::{sign_changes, value};
 use super::runge_kutta::RungeKutta;
@@ -79,6 +80,7 @@ impl<'a> Output<'a> {
                 }
                 extremes.follow(&segment, &self.shapes, &mut range);
             }
+            FlowEvent::Event { turn: Some((_, Turn::Undone | Turn::Forgotten(_))), .. } => {}
             FlowEvent::Event { event, .. } => {
                 let point = self.system.components()[event.point];
                 events.push(Event { time: begin + event.time, point, ..event });

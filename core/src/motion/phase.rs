@@ -244,7 +244,8 @@ impl Sticking {
         if still(&state.displacement) && still(&state.velocity) && still(&state.force) {
             return true;
         }
-        if !self.damped {
+        // Without sliders a contact slips however little it moves.
+        if !self.damped || !system.microslips().is_empty() {
             return false;
         }
         let rest = self.phase.rest(system, state);

@@ -4,7 +4,9 @@
 //! of the series follows from the ones before. The series needs no decomposition per set of sticking contacts, has no defective
 //! cases, and hands displacements and forces over as polynomials whose zeros are the events.
 
+use super::branch_series::{BranchSeries, Pass};
 use super::damping::Damping;
+use super::microslip::Microslip;
 use super::modal_system::{dot, ContactState, ModalSystem};
 use super::polynomial::{self, DEGREE, TRUNCATION};
 use super::sliding::{Slide, Swing};
@@ -14,6 +16,13 @@ use super::state::State;
 const LONGEST: f64 = 12.0;
 /// The same where contacts slide: disturbances, which may be faster than the motion, take the same steps.
 const LONGEST_SLIDING: f64 = 4.0;
+
+/// The same where contacts slip little by little, first step behind a reversal that is tried, the shortest one, and
+/// passes over a step.
+const LONGEST_MICROSLIP: f64 = 3.0;
+const FRESH: f64 = 1e-2;
+const SHORTEST: f64 = 1e-9;
+const PASSES: usize = 24;
 
 /// Sum relative to its parts that is rounding.
 const CANCELLED: f64 = 1e-14;
@@ -36,6 +45,11 @@ pub struct PowerSeries {
     damping: Vec<f64>,
     /// Contacts that slide in a plane.
     slides: Vec<Slide>,
+    /// Contacts without sliders, …
+    branches: Vec<BranchSeries>,
+    /// … the length of τ over which their forces hold, and the first ones to try: behind a reversal, and else.
+    window: f64,
+    tried: [f64; 2],
 }
 
 impl PowerSeries {
@@ -52,6 +66,9 @@ impl PowerSeries {
             stiffness: vec![0.0; modes],
             damping: vec![0.0; if system.is_diagonally_damped() { modes } else { 0 }],
             slides: Vec::new(),
+            branches: Vec::new(),
+            window: LONGEST,
+            tried: [FRESH, LONGEST_MICROSLIP],
         };
         series.set_rate(system, rate);
         series
@@ -85,6 +102,58 @@ impl PowerSeries {
         self.slides = Slide::all(system, regime, state, self.slowest);
         let rate = self.slides.iter().map(Slide::rate).fold(self.slowest, f64::max);
         self.set_rate(system, rate);
+        let moves = |own: &Microslip| {
+            [&state.displacement, &state.velocity]
+                .map(|values| dot(system.contact_shape(own.point), values))
+        };
+        self.branches.clear();
+        for (number, own) in system.microslips.iter().enumerate() {
+            let [u, speed] = moves(own);
+            self.branches.push(BranchSeries::new(own, number, state, [u, speed / rate]));
+        }
+        if self.branches.is_empty() {
+            return self.expand_once(system, regime, omega, state);
+        }
+        let fresh = usize::from(!self.branches.iter().any(|branch| branch.fresh));
+        self.window = self.tried[fresh].min(LONGEST_MICROSLIP);
+        while !self.follow_branches(system, regime, omega, state) && self.window > SHORTEST {
+            self.window *= 0.5;
+            self.branches.iter_mut().for_each(BranchSeries::restart);
+        }
+        self.tried[fresh] = 2.0 * self.window;
+    }
+
+    /// Finds the forces of the contacts without sliders over the window at hand; `false` where it is too long.
+    fn follow_branches(
+        &mut self,
+        system: &ModalSystem,
+        regime: &ContactState,
+        omega: f64,
+        state: &State,
+    ) -> bool {
+        for _ in 0..PASSES {
+            self.expand_once(system, regime, omega, state);
+            let (contact, window) = (&self.contact, self.window);
+            let passes: Vec<Pass> =
+                self.branches.iter_mut().map(|branch| branch.pass(contact, window)).collect();
+            if passes.contains(&Pass::Unresolved) {
+                return false;
+            }
+            if passes.iter().all(|pass| *pass == Pass::Settled) {
+                return true;
+            }
+        }
+        false
+    }
+
+    fn expand_once(
+        &mut self,
+        system: &ModalSystem,
+        regime: &ContactState,
+        omega: f64,
+        state: &State,
+    ) {
+        let rate = self.rate;
         self.begin([&state.displacement, &state.velocity, &state.force]);
         // exp(ikω t) in powers of τ: (ikω/ρ)^m / m! times its value at the start.
         let mut loads: Vec<(f64, [f64; 2])> = system
@@ -97,6 +166,10 @@ impl PowerSeries {
             .collect();
         for power in 0..=DEGREE {
             self.expand_contacts(system, regime, power);
+            for branch in self.branches.iter().filter(|_| power > 0) {
+                let at = branch.point * (DEGREE + 1) + power;
+                self.force[at] = branch.force(power, &self.contact);
+            }
             let mut slides = std::mem::take(&mut self.slides);
             for slide in &mut slides {
                 let traction = slide.advance(power, &self.contact);
@@ -111,15 +184,18 @@ impl PowerSeries {
         }
     }
 
-    /// Expands a small disturbance `(η, η', f)` of a motion without that of its loads.
+    /// Expands a small disturbance `(η, η', f)` of a motion without that of its loads; `begun` is that of
+    /// displacement and force where the branches of the contacts without sliders began.
     pub(super) fn disturb(
         &mut self,
         system: &ModalSystem,
         regime: &ContactState,
         motion: &Self,
         [displacement, velocity, force]: [&[f64]; 3],
+        begun: &[[f64; 2]],
     ) {
         self.slides.clear();
+        self.branches.clear();
         self.set_rate(system, motion.rate);
         self.begin([displacement, velocity, force]);
         for &point in &system.normals {
@@ -131,6 +207,10 @@ impl PowerSeries {
             motion.slides.iter().map(|slide| Swing::new(slide, force, moved)).collect();
         for power in 0..=DEGREE {
             self.expand_contacts(system, regime, power);
+            for (branch, begun) in motion.branches.iter().zip(begun) {
+                let at = branch.point * (DEGREE + 1) + power;
+                self.force[at] = branch.disturbed(power, &self.contact, *begun);
+            }
             for swing in &mut swings {
                 let traction = swing.advance(power, &self.contact);
                 self.set_forces(swing.points(), power, traction);
@@ -241,12 +321,25 @@ impl PowerSeries {
             reach = reach.min(longest);
         }
         let most = if self.slides.is_empty() { reach } else { reach.min(LONGEST_SLIDING) };
+        let most = if self.branches.is_empty() { most } else { most.min(self.window) };
         self.slides.iter().map(|slide| slide.reach(&self.force)).fold(most, f64::min)
     }
 
-    /// Whether a contact slides in a plane.
-    pub(super) fn slides_in_a_plane(&self) -> bool {
-        !self.slides.is_empty()
+    /// Whether the equations are not linear along the step.
+    pub(super) fn is_nonlinear(&self) -> bool {
+        !self.slides.is_empty() || !self.branches.is_empty()
+    }
+
+    /// The contacts without sliders.
+    pub(crate) fn branches(&self) -> &[BranchSeries] {
+        &self.branches
+    }
+
+    /// Displacements at which a contact without sliders goes on by another formula, each with a distance
+    /// that is rounding.
+    pub(super) fn targets(&self, system: &ModalSystem, point: usize) -> Vec<[f64; 2]> {
+        let branch = self.branches.iter().find(|branch| branch.point == point);
+        branch.map_or(Vec::new(), |branch| branch.targets(&system.microslips[branch.number]))
     }
 
     /// The contacts that slide in a plane.

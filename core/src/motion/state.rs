@@ -1,8 +1,9 @@
 //! The state of a motion: modal displacements and velocities, contact forces.
 
 use super::bodies::Body;
-use super::modal_system::ModalSystem;
-use crate::contact::{Bound, PointState};
+use super::microslip::Reversals;
+use super::modal_system::{dot, ModalSystem};
+use crate::contact::{Bound, PointState, REVERSALS};
 use crate::error::brief;
 use crate::Error;
 use faer::Mat;
@@ -31,6 +32,8 @@ pub struct State {
     pub force: Vec<f64>,
     /// What the laws remember whose forces are not their state.
     pub memory: Vec<f64>,
+    /// Reversals of the contacts without sliders.
+    pub reversals: Vec<Reversals>,
     /// What each contact point does.
     pub points: Vec<PointState>,
 }
@@ -47,6 +50,7 @@ impl State {
             velocity: vec![0.0; modes],
             force: vec![0.0; points],
             memory: vec![0.0; memory],
+            reversals: vec![Reversals::default(); system.microslips.len()],
             points: vec![PointState::Stuck; points],
         };
         if system.has_normals() || memory > 0 {
@@ -77,6 +81,19 @@ impl State {
         state.close(system);
         state.press(system);
         state.recall(system, memory);
+        let mut origins = memory;
+        for body in system.bodies() {
+            let (own, rest) = origins.split_at(body.remembered.len() + body.told);
+            origins = rest;
+            if body.ways.is_some() && own[0] != 0.0 {
+                let remedy = "Runge-Kutta steps know no origin but 0; take scheme = \"exact\"";
+                return Err(Error::value(
+                    "state: origin of a contact without sliders",
+                    own[0],
+                    remedy,
+                ));
+            }
+        }
         for point in system.bodies().iter().flat_map(|body| body.remembered.iter().copied()) {
             let plane = system.plane_of(point).map(|plane| system.traction(plane, &state.force));
             let f = plane.unwrap_or(state.force[point]);
@@ -127,10 +144,54 @@ impl State {
     pub(crate) fn recall(&mut self, system: &ModalSystem, mut values: &[f64]) {
         for body in system.bodies() {
             let (forces, rest) = values.split_at(body.remembered.len());
-            let (memory, rest) = rest.split_at(body.memory.len());
+            let (memory, rest) = rest.split_at(body.told);
             body.remembered.iter().zip(forces).for_each(|(&i, f)| self.force[i] = *f);
-            self.memory[body.memory.clone()].copy_from_slice(memory);
+            let own = &mut self.memory[body.memory.clone()];
+            match body.ways {
+                Some(k) => own.iter_mut().zip(&memory[1..]).for_each(|(z, way)| *z = k * way),
+                None => own.copy_from_slice(memory),
+            }
             values = rest;
+        }
+        self.reverse(system);
+    }
+
+    /// Takes the reversals that the memory tells over.
+    fn reverse(&mut self, system: &ModalSystem) {
+        for (own, reversals) in system.microslips.iter().zip(&mut self.reversals) {
+            let [origin, ways @ ..] = &self.memory[own.memory.clone()] else { continue };
+            let now = dot(system.contact_shape(own.point), &self.displacement);
+            *reversals = Reversals::through(own, *origin, ways, now).0;
+        }
+    }
+
+    /// Of each contact without sliders, the numbers of the memory that its reversals are made of.
+    pub(crate) fn recall_ways(&mut self, system: &ModalSystem, values: &[f64]) -> Vec<Vec<usize>> {
+        let mut kept = Vec::new();
+        for ((own, reversals), values) in system
+            .microslips
+            .iter()
+            .zip(&mut self.reversals)
+            .zip(values.chunks_exact(1 + REVERSALS))
+        {
+            let now = dot(system.contact_shape(own.point), &self.displacement);
+            let numbers;
+            (*reversals, numbers) = Reversals::through(own, values[0], &values[1..], now);
+            kept.push(numbers);
+        }
+        self.settle_microslips(system);
+        kept
+    }
+
+    /// Gives the contacts without sliders their directions and forces.
+    fn settle_microslips(&mut self, system: &ModalSystem) {
+        for (own, reversals) in system.microslips.iter().zip(&self.reversals) {
+            let [u, speed] = [&self.displacement, &self.velocity]
+                .map(|values| dot(system.contact_shape(own.point), values));
+            let sign = reversals.heading(u, speed);
+            self.points[own.point] = PointState::slipping(sign);
+            self.force[own.point] = reversals.force(own, sign, u);
+            self.memory[own.memory.clone()].copy_from_slice(&reversals.numbers());
         }
     }
 
@@ -194,9 +255,17 @@ impl State {
     pub fn to_dofs(&self, system: &ModalSystem) -> Vec<f64> {
         let mut values = system.to_dofs(&self.displacement);
         values.extend(system.to_dofs(&self.velocity));
+        let mut memory = self.memory.clone();
+        for (own, reversals) in system.microslips.iter().zip(&self.reversals) {
+            memory[own.memory.clone()].copy_from_slice(&reversals.numbers());
+        }
         for body in system.bodies() {
             values.extend(body.remembered.iter().map(|&i| self.force[i]));
-            values.extend(&self.memory[body.memory.clone()]);
+            let own = &memory[body.memory.clone()];
+            match body.ways {
+                Some(stiffness) => values.extend(Reversals::marched(own, stiffness).numbers()),
+                None => values.extend(own),
+            }
         }
         values
     }
@@ -212,6 +281,9 @@ impl State {
             let range = body.points.clone();
             let size = range.len();
             let force = &mut self.force[range.clone()];
+            if matches!(system.bounds[range.start], Bound::Backbone(_)) {
+                continue;
+            }
             if body.remembered.is_empty() {
                 let memory = &mut self.memory[body.memory.clone()];
                 body.law.march(&at[range.clone()], &at[range.clone()], memory, force);
@@ -229,6 +301,10 @@ impl State {
                     };
                 }
             }
+        }
+        self.settle_microslips(system);
+        for own in &system.microslips {
+            held[own.point] = self.points[own.point];
         }
         for plane in system.planes() {
             if plane.points.iter().any(|&i| held[i].slips()) {

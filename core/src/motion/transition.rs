@@ -13,6 +13,7 @@
 use super::bodies::Body;
 use super::exponential::exponential;
 use super::linear_phase::{LinearPhase, Onset};
+use super::loop_disturbance::LoopDisturbance;
 use super::modal_system::{ContactState, ModalSystem};
 use super::power_series::PowerSeries;
 use super::state::State;
@@ -131,19 +132,36 @@ impl<'a> Transition<'a> {
         phases: &[LinearPhase],
         held: &[PointState],
         force: &[f64],
+        loops: &mut LoopDisturbance,
     ) -> Mat<f64> {
-        let mut total = self.start(phases, held, force);
+        let own = self.start(phases, held, force);
+        let mut total = Mat::zeros(own.nrows(), own.ncols() + loops.columns);
+        total.get_mut(.., ..own.ncols()).copy_from(&own);
         for phase in phases {
             if let Some((series, length)) = &phase.slide {
-                self.slide(&phase.regime, series, *length, &mut total);
+                self.slide(&phase.regime, series, *length, &mut total, loops);
             } else if phase.duration > 0.0 {
                 total = self.exponential(&phase.regime, phase.duration) * total;
             }
             if let Some(onset) = &phase.onset {
                 self.jump(onset, &mut total);
             }
+            for (number, turn) in &phase.turns {
+                let point = self.system.microslips()[*number].point;
+                loops.turn(*number, *turn, || self.displacements(point, &total));
+            }
         }
         total
+    }
+
+    /// Disturbances of the displacement of a point.
+    fn displacements(&self, point: usize, total: &Mat<f64>) -> Vec<f64> {
+        let shape = self.system.contact_shape(point);
+        let own = |column: usize| -> f64 {
+            let parts = shape.iter().zip(&self.weight).enumerate();
+            parts.map(|(j, (b, w))| b / w * total[(j, column)]).sum()
+        };
+        (0..total.ncols()).map(own).collect()
     }
 
     /// Derivative at the start: points that slip, and forces that their limits hold, vary with their
@@ -219,6 +237,7 @@ impl<'a> Transition<'a> {
         series: &PowerSeries,
         length: f64,
         total: &mut Mat<f64>,
+        loops: &mut LoopDisturbance,
     ) {
         let (system, modes) = (self.system, self.weight.len());
         let mut disturbance = series.clone();
@@ -234,10 +253,14 @@ impl<'a> Transition<'a> {
                 let own = body.elastic.forces(&own.collect::<Vec<_>>());
                 force[body.points.clone()].copy_from_slice(&own);
             }
-            disturbance.disturb(system, regime, series, [&x, &v, &force]);
+            let begun = loops.begun(column);
+            disturbance.disturb(system, regime, series, [&x, &v, &force], &begun);
             disturbance.motion_at(length, &mut x, &mut v);
             for (point, force) in force.iter_mut().enumerate() {
                 *force = disturbance.force_at(point, length);
+            }
+            for (own, held) in system.microslips().iter().zip(&mut loops.held) {
+                held[column] = force[own.point];
             }
             for j in 0..modes {
                 total[(j, column)] = x[j] * self.weight[j];

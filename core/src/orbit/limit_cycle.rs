@@ -43,6 +43,7 @@ impl<'a> CycleOrbits<'a> {
     pub fn new(family: &'a FlutterModel<'a>) -> Result<Option<Self>, Error> {
         let Some(negative) = family.negative() else { return Ok(None) };
         let system = ModalSystem::new(family.model())?;
+        system.require_sliders(family.model())?;
         let damping = system.project(family.model().structure().damping());
         let negative = system.project(negative.as_ref());
         Ok(Some(Self { family, system, damping, negative }))

@@ -7,6 +7,7 @@ mod cycles;
 mod drift;
 mod limit_cycle;
 mod linear_path;
+mod loop_memory;
 mod orbit_postprocess;
 mod period_map;
 mod periodic;

@@ -96,6 +96,11 @@ impl<'a> PeriodicOrbits<'a> {
         };
         let system = Arc::new(ModalSystem::new(with_history.as_ref().unwrap_or(model))?);
         Error::check_dofs(observe, system.modes())?;
+        if let (Residual::Value(value), false) = (settings.residual, system.microslips().is_empty())
+        {
+            let remedy = "exact orbits of contacts without sliders take 'centred' or 'from_rest'";
+            return Err(Error::value("residual", value, remedy));
+        }
         Ok(Self {
             model,
             with_history,
@@ -137,6 +142,7 @@ impl<'a> PeriodicOrbits<'a> {
     /// The model has no such symmetry.
     pub fn rotating(mut self, rotation: Option<Rotation>) -> Result<Self, Error> {
         if let Some(rotation) = &rotation {
+            self.system.require_sliders(self.model)?;
             rotation.check(&self.system)?;
         }
         self.rotation = rotation;
@@ -202,6 +208,7 @@ impl<'a> PeriodicOrbits<'a> {
         let system = Arc::clone(&self.system);
         let mut shooting = Shooting::new(&system, omega, self.half_wave, Some(&interrupted));
         shooting.grant(self.granted);
+        shooting.assume(self.settings.residual);
         if let Some(rotation) = self.rotation {
             shooting.rotate(rotation, &system);
         }
@@ -297,8 +304,8 @@ impl<'a> PeriodicOrbits<'a> {
         let settings = self.newton();
         let mut iterations = 0;
         let mut y = match neighbour {
-            Some(state) => shooting.coordinates.coordinates(state),
-            None => shooting.coordinates.coordinates(&self.harmonic_start(omega)),
+            Some(state) => shooting.unknowns(state),
+            None => shooting.unknowns(&self.harmonic_start(omega)),
         };
         // Any other start has other sliders.
         let attempts = if self.sliders.is_empty() { 2 + ROUNDS } else { 1 };
@@ -306,7 +313,7 @@ impl<'a> PeriodicOrbits<'a> {
             match attempt {
                 0 => {}
                 1 if neighbour.is_some() => {
-                    y = shooting.coordinates.coordinates(&self.harmonic_start(omega));
+                    y = shooting.unknowns(&self.harmonic_start(omega));
                 }
                 1 => continue,
                 round => {
@@ -315,7 +322,7 @@ impl<'a> PeriodicOrbits<'a> {
                         if shooting.interrupted() {
                             return None;
                         }
-                        y = shooting.coordinates.coordinates(&State::rest(&self.system));
+                        y = shooting.unknowns(&State::rest(&self.system));
                     }
                 }
             }
@@ -372,7 +379,7 @@ impl<'a> PeriodicOrbits<'a> {
         let start = std::time::Instant::now();
         let highest = self.settings.harmonics;
         let span = std::f64::consts::TAU / omega * if self.half_wave { 0.5 } else { 1.0 };
-        let (mut state, _) = shooting.coordinates.state(y);
+        let mut state = shooting.state(y);
         let mut orbit = self.empty(omega, PointStatus::Converged);
         for pass in 0..2 {
             orbit.state = state.to_dofs(system);

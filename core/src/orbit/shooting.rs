@@ -1,8 +1,9 @@
 //! Shooting: the start state that the flow brings back after a period, or to its mirror image
 //! after half a period.
 
+use super::loop_memory::LoopMemory;
 use super::rotation::Rotation;
-use crate::contact::PointState;
+use crate::contact::{PointState, Residual};
 use crate::motion::{Flow, FlowEvent, LinearPhase, ModalSystem, State, Transition};
 use crate::solve::{norm, System};
 use faer::linalg::solvers::Solve as _;
@@ -42,6 +43,8 @@ pub(super) struct Shooting<'a> {
     /// The forces at the start.
     begun: Vec<f64>,
     slipped: Vec<bool>,
+    /// What contacts without sliders remember.
+    memory: LoopMemory,
     /// State after the span.
     pub(super) end: Option<State>,
     derivative: Option<Mat<f64>>,
@@ -78,7 +81,7 @@ impl<'a> Shooting<'a> {
             flow,
             coordinates,
             limits: system.limits(),
-            idle: system.memories() - system.strains(),
+            idle: system.memories() - system.strains() - LoopMemory::places(system),
             half_wave,
             symmetric: half_wave,
             rotation: None,
@@ -89,10 +92,30 @@ impl<'a> Shooting<'a> {
             held: Vec::new(),
             begun: Vec::new(),
             slipped: Vec::new(),
+            memory: LoopMemory::new(system, half_wave),
             end: None,
             derivative: None,
             matrices: 0,
         }
+    }
+
+    /// Has contacts without sliders keep what a residual traction says.
+    pub(super) fn assume(&mut self, residual: Residual) {
+        self.memory.assume(residual);
+    }
+
+    /// The unknowns of a state: its coordinates, and behind them what contacts without sliders remember.
+    pub(super) fn unknowns(&self, state: &State) -> Vec<f64> {
+        let mut y = self.coordinates.coordinates(state);
+        y.extend(self.memory.numbers(state));
+        y
+    }
+
+    /// The state of the unknowns.
+    pub(super) fn state(&self, y: &[f64]) -> State {
+        let (mut state, _) = self.coordinates.state(y);
+        self.memory.recall(&mut state, self.coordinates.system(), &y[self.coordinates.size()..]);
+        state
     }
 
     /// Grants the flow another number of steps.
@@ -122,13 +145,16 @@ impl<'a> Shooting<'a> {
     /// Coordinates after the span, mirrored under half-wave symmetry.
     pub(super) fn image(&mut self, y: &[f64]) -> Option<Vec<f64>> {
         let (mut state, held) = self.coordinates.state(y);
+        let (size, system) = (self.coordinates.size(), self.coordinates.system());
+        self.memory.begin(&mut state, system, &y[size..]);
         self.held = held;
         self.begun.clone_from(&state.force);
         self.phases.clear();
         self.derivative = None;
-        let (phases, system) = (&mut self.phases, self.coordinates.system());
+        let (phases, memory) = (&mut self.phases, &mut self.memory);
         let run = self.flow.run(&mut state, self.span, &mut |passage| {
             LinearPhase::record(phases, system, &passage);
+            memory.follow(&passage);
         });
         self.slipped = (0..self.limits.len())
             .map(|i| {
@@ -140,6 +166,7 @@ impl<'a> Shooting<'a> {
         }
         run.ok()?;
         let mut y = self.coordinates.coordinates(&state);
+        y.extend(self.memory.end(system, &state)?);
         self.end = Some(state);
         if let Some((_, matrix)) = &self.rotation {
             let turned = matrix * Mat::from_fn(y.len(), 1, |i, _| y[i]);
@@ -179,7 +206,7 @@ impl<'a> Shooting<'a> {
             return derivative.clone();
         }
         self.matrices += 1;
-        let along = self.coordinates.along(&self.phases, &self.held, &self.begun);
+        let along = self.memory.along(&self.coordinates, &self.phases, &self.held, &self.begun);
         let derivative = match &self.rotation {
             Some((_, matrix)) => matrix * along,
             None if self.half_wave => faer::Scale(-1.0) * along,
@@ -206,7 +233,11 @@ impl<'a> Shooting<'a> {
     /// Multipliers over the span, mirrored under half-wave symmetry, without the neutral ones; and
     /// the number of these.
     fn span_multipliers(&mut self) -> Option<(Vec<c64>, usize)> {
-        let matrix = self.derivative();
+        let mut matrix = self.derivative();
+        // What elements that never slip keep is not followed.
+        for row in self.memory.origins(self.coordinates.size()) {
+            (0..matrix.ncols()).for_each(|column| matrix[(row, column)] = 0.0);
+        }
         let (rest, neutral) = self.without_neutral(&matrix, &self.slipped);
         Some((rest.eigenvalues().ok()?, neutral))
     }
@@ -254,6 +285,7 @@ impl<'a> Shooting<'a> {
                 forms.push((pivot, form));
             }
         }
+        forms.iter_mut().for_each(|(_, form)| form.resize(matrix.nrows(), 0.0));
         forms
     }
 
@@ -280,7 +312,9 @@ impl<'a> Shooting<'a> {
         }
         // Eigenvectors of the matrix and of its transpose, orthogonal to each other: what is left
         // across all of them has the other multipliers.
-        let along = Mat::from_fn(kept.len(), rigid.len(), |i, j| rigid[j][kept[i]]);
+        let along = Mat::from_fn(kept.len(), rigid.len(), |i, j| {
+            rigid[j].get(kept[i]).copied().unwrap_or(0.0)
+        });
         let basis = along.qr().compute_Q();
         let across = basis.get(.., rigid.len()..);
         (across.transpose() * &rest * across, conserved.len() + rigid.len())
@@ -289,7 +323,7 @@ impl<'a> Shooting<'a> {
 
 impl System for Shooting<'_> {
     fn size(&self) -> usize {
-        self.coordinates.size()
+        self.coordinates.size() + LoopMemory::places(self.coordinates.system())
     }
 
     fn residual(&mut self, x: &[f64], out: &mut [f64]) {

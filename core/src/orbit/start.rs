@@ -1,7 +1,7 @@
 //! The state at the start of the period of a harmonic balance.
 
 use crate::balance::Point;
-use crate::contact::{Motion, Residual};
+use crate::contact::{Motion, Residual, REVERSALS};
 use crate::fourier::{Harmonics, SampleTable};
 use crate::model::Model;
 use crate::motion::{ModalSystem, State};
@@ -36,8 +36,18 @@ pub(super) fn start_of(
             table.harmonics().write_series(amplitudes, out);
         }
         let motion = Motion { table: &table, displacement: &series, residual };
+        let known = law.state_history(motion, 1);
+        if let Some(curve) = law.loading() {
+            // Ways between reversals times the stiffness, of which the outermost are enough.
+            let k = curve.stiffness();
+            let mut numbers = [0.0; 1 + REVERSALS];
+            let ways = numbers[1..].iter_mut().zip(&known);
+            ways.filter(|_| k > 0.0).for_each(|(way, known)| *way = known / k);
+            memory.extend(numbers);
+            continue;
+        }
         // What its elements remember is the state of such a law.
-        memory.extend(law.state_history(motion, 1));
+        memory.extend(known);
     }
     state.recall(system, &memory);
     state.settle_points(system);

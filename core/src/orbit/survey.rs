@@ -3,7 +3,7 @@
 use super::quadrature::Quadrature;
 use crate::balance::Point;
 use crate::contact::{PointState, PointSummary};
-use crate::motion::{ContactState, Event, Extremes, FlowEvent, FlowSegment, ModalSystem};
+use crate::motion::{ContactState, Event, Extremes, FlowEvent, FlowSegment, ModalSystem, Turn};
 use faer::c64;
 use std::f64::consts::TAU;
 
@@ -70,6 +70,7 @@ impl<'a> Survey<'a> {
                 self.extremes.follow(segment, &self.shapes, &mut self.range);
                 self.follow_slip(segment);
             }
+            FlowEvent::Event { turn: Some((_, Turn::Undone | Turn::Forgotten(_))), .. } => {}
             FlowEvent::Event { event, .. } => {
                 let point = self.system.components()[event.point];
                 self.events.push(Event { point, ..*event });
@@ -101,6 +102,19 @@ impl<'a> Survey<'a> {
             for j in 0..modes {
                 self.viscous += time * damping[j] * velocity[j];
                 self.work += time * load[j] * velocity[j];
+            }
+            let share = time * self.omega / TAU;
+            for branch in segment.series.branches() {
+                let own = &self.system.microslips()[branch.number];
+                let shape = self.system.contact_shape(own.point).iter();
+                let speed: f64 = shape.zip(&velocity).map(|(b, v)| b * v).sum();
+                let summary = &mut self.contacts[own.point];
+                summary.dissipation += time * motion[modes + own.point] * speed;
+                // Mean over its elements, weighted by their stiffness.
+                let stiffness = own.curve.stiffness();
+                if stiffness > 0.0 {
+                    summary.slip_fraction += share * (1.0 - branch.stiffness_at(tau) / stiffness);
+                }
             }
             if slips {
                 let speed = self.system.contact_displacement(&velocity);
@@ -136,6 +150,7 @@ impl<'a> Survey<'a> {
             let state = segment.regime.points[point];
             let counts = match state {
                 // Of a point that presses: the share of the period in which it is open.
+                _ if self.system.is_microslip(point) => false,
                 PointState::Open => limit.is_infinite(),
                 _ => limit == 0.0 || state.slips(),
             };

@@ -138,6 +138,11 @@ class Contact(ABC):
         return self.limits
 
     @property
+    def remembered(self) -> tuple[float, ...]:
+        """Bound of each number that a state has of it: the forces of its sliders [N]."""
+        return self.slider_limits
+
+    @property
     def sliders(self) -> int:
         """Number of parts that have slip limits, and other parameters, of their own."""
         return self.points if self.by_point else len(self.slider_limits)

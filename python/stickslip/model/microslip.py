@@ -20,6 +20,8 @@ Table: TypeAlias = tuple[tuple[float, ...], tuple[float, ...]]
 
 _CONCAVE = 1e-9
 """Rise of a table's slope, relative to it, that is rounding."""
+_REVERSALS = 12
+"""Reversals that a state tells."""
 _SHAPES = ("exponential", "shear-layer")
 
 
@@ -51,6 +53,16 @@ class _Microslip(TwoEnds):
 
     def _refusal(self, key: str, text: str) -> ModelError:
         return ModelError(f"{self._entry}: {key} {getattr(self, key):g} {text}")
+
+    @property
+    def remembered(self) -> tuple[float, ...]:
+        """Bound of each number that a state has of it, none: its origin and reversals [m].
+
+        The origin is the displacement without force before the first loading. Behind it stand the
+        ways from it to the first reversal that is remembered, and from each to the next; zeros
+        are unused places.
+        """
+        return (np.inf,) * (1 + _REVERSALS)
 
     @property
     def stuck_stiffness(self) -> Matrix:
@@ -321,6 +333,11 @@ class BoucWen(_Microslip):
 
     exponent: float = field(default=1.0, kw_only=True)
     beta: float = field(default=0.5, kw_only=True)
+
+    @property
+    def remembered(self) -> tuple[float, ...]:
+        """Bound of each number that a state has of it: its force [N]."""
+        return self.slider_limits
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -32,7 +32,8 @@ class State:
         Of all degrees of freedom in order, or by name, the others zero [m, m/s]. Default: zero.
     contact_force : array_like, shape (n_p,), or mapping, optional
         Of all contact points in order, or by contact or (contact, point), the others zero [N].
-        Default: zero.
+        Of contacts without sliders (`Iwan`, `Masing`) the origin and the reversals [m], see their
+        `remembered`. Default: zero.
 
     Raises
     ------
@@ -99,7 +100,7 @@ class State:
 
     def require_fit(self, model: Model, entry: str) -> None:
         """Refuse a model with other degrees of freedom or another number of contact points."""
-        points = sum(len(contact.slider_limits) for contact in model.contacts)
+        points = sum(len(contact.remembered) for contact in model.contacts)
         if self.dofs != model.structure.dofs or self.contact_force.size != points:
             raise ModelError(
                 f"{entry}: a state of {len(self.dofs)} dofs and {self.contact_force.size} contact "
@@ -124,15 +125,17 @@ def _motion(model: Model, values: object, entry: str, unit: str) -> Float:
 
 
 def _forces(model: Model, values: object) -> Float:
-    sizes = [len(contact.slider_limits) for contact in model.contacts]
+    sizes = [len(contact.remembered) for contact in model.contacts]
     forces = np.zeros(sum(sizes))
     if isinstance(values, Mapping):
         for reference, value in values.items():
             contact, point = model.slider(reference)
-            if sizes[contact] != model.contacts[contact].sliders:
+            own = model.contacts[contact]
+            if sizes[contact] != own.sliders:
                 raise ModelError(
-                    f"contact_force of {reference!r}: two tractions per node; give all forces of "
-                    "the model in one list"
+                    f"contact_force of {reference!r}: "
+                    f"{'two tractions per node' if own.tangential > 1 else 'reversals'}; give all "
+                    "forces of the model in one list"
                 )
             place = sum(sizes[:contact]) + point
             forces[place] = physical_number(value, "N", f"contact_force of {reference!r}")
@@ -163,7 +166,7 @@ def _require_held(model: Model, forces: Float, entry: str) -> None:
     """Refuse forces beyond what their contact can hold."""
     place = 0
     for name, contact in zip(model.contact_names, model.contacts, strict=True):
-        limits = contact.slider_limits
+        limits = contact.remembered
         for force, limit in zip(forces[place:], limits, strict=False):
             if abs(force) > limit * (1.0 + _ROUNDING):
                 raise ModelError(

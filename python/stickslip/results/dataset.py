@@ -71,7 +71,13 @@ def _numbered(model: Model, counts: Sequence[int]) -> list[str]:
 
 
 def state_names(model: Model) -> list[str]:
-    """Return a name for every entry of a state: displacements, velocities, contact forces."""
+    """Return a name for every entry of a state: displacements, velocities, forces, reversals."""
     dofs = model.structure.dofs
     moved = [f"{letter} {dof}" for letter in "xv" for dof in dofs]
-    return moved + [f"f {slider}" for slider in slider_names(model)]
+    sliders = iter(slider_names(model))
+    names = []
+    for name, one in zip(model.contact_names, model.contacts, strict=True):
+        own = [f"f {next(sliders)}" for _ in one.slider_limits]
+        reversals = [f"r {name}[{place}]" for place in range(len(one.remembered))]
+        names += own if len(own) == len(reversals) else reversals
+    return moved + names
