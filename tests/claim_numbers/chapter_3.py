@@ -1,5 +1,10 @@
 """Claims of chapter III: verdicts and numbers."""
 
+BY_ROUNDING = 5e-2
+"""Tolerance of counts of runs from poor starts, and of a median over few steps: the last bits decide some
+of them. Four kernels of OpenBLAS, each for processors of its own, gave 61.7 to 64.1, 50 to 53.1, 79 to 83, 79
+to 82 and 0.170 to 0.183."""
+
 NUMBERS: dict[str, tuple[str, dict[str, tuple[float, float]]]] = {
     "never-unloads": (
         "false",
@@ -45,8 +50,8 @@ NUMBERS: dict[str, tuple[str, dict[str, tuple[float, float]]]] = {
         {
             "runs by LU with pivots": (42, 0),
             "runs by QR": (42, 0),
-            "runs by updated LU": (83, 0),
-            "runs by updated QR": (82, 0),
+            "runs by updated LU": (81, BY_ROUNDING),
+            "runs by updated QR": (80.5, BY_ROUNDING),
             "backward error, LU with pivots": (0, 1e-9),
             "backward error, QR": (0, 1e-9),
             "backward error, updated LU": (0, 1e-9),
@@ -59,14 +64,14 @@ NUMBERS: dict[str, tuple[str, dict[str, tuple[float, float]]]] = {
     "quadratic": ("holds", {"order of Newton": (6.8075, 1e-2)}),
     "superlinear": (
         "holds",
-        {"last quotient": (0.16954, 1e-2), "quotient in the middle": (0.78121, 1e-2)},
+        {"last quotient": (0.175, BY_ROUNDING), "quotient in the middle": (0.78121, 1e-2)},
     ),
     "printed-norm": ("false", {"as printed": (15, 0), "squared": (31, 0), "runs": (32, 0)}),
     "better-stability": (
         "holds with limits",
-        {"Broyden": (64.062, 1e-2), "Newton": (32.812, 1e-2), "Newton here": (100, 0)},
+        {"Broyden": (63.0, BY_ROUNDING), "Newton": (32.812, 1e-2), "Newton here": (100, 0)},
     ),
-    "poor-guess": ("false", {"single harmonic": (96.875, 1e-2), "poor starts": (53.125, 1e-2)}),
+    "poor-guess": ("false", {"single harmonic": (96.875, 1e-2), "poor starts": (51.5, BY_ROUNDING)}),
     "newton-chord": ("holds", {"order of Newton-Chord": (1.0, 1e-2)}),
     "faster-than-newton": ("false", {}),
     "more-iterations": ("holds", {"iterations of Broyden over Newton": (1.2289, 1e-2)}),

@@ -57,17 +57,15 @@ impl NodeFactors {
         }
         for k in 0..NODES {
             let own = right[k];
-            for i in k + 1..NODES {
-                let factor = self.lu[i][k];
-                right[i].iter_mut().zip(&own).for_each(|(a, b)| *a -= factor * b);
+            for (row, lower) in right.iter_mut().zip(&self.lu).skip(k + 1) {
+                row.iter_mut().zip(&own).for_each(|(a, b)| *a -= lower[k] * b);
             }
         }
         for k in (0..NODES).rev() {
             right[k].iter_mut().for_each(|a| *a *= self.inverse[k]);
             let own = right[k];
-            for i in 0..k {
-                let factor = self.lu[i][k];
-                right[i].iter_mut().zip(&own).for_each(|(a, b)| *a -= factor * b);
+            for (row, upper) in right.iter_mut().zip(&self.lu).take(k) {
+                row.iter_mut().zip(&own).for_each(|(a, b)| *a -= upper[k] * b);
             }
         }
     }

@@ -243,11 +243,11 @@ impl Model {
     /// Number of numbers in a state in time: displacements, velocities and what the laws remember.
     #[must_use]
     pub fn states(&self) -> usize {
-        let told = |law: &Box<dyn ContactLaw>| match law.loading() {
+        let told = |law: &dyn ContactLaw| match law.loading() {
             Some(_) => 1 + REVERSALS,
             None => law.state_size(),
         };
-        2 * self.structure.dofs() + self.laws.iter().map(told).sum::<usize>()
+        2 * self.structure.dofs() + self.laws.iter().map(|law| told(law.as_ref())).sum::<usize>()
     }
 
     /// Rows of B that belong to each contact.

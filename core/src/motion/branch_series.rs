@@ -186,7 +186,7 @@ impl BranchSeries {
         self.rest = series(&rest, length);
         self.rest[0] = 0.0;
         self.slope = series(&slope, length);
-        if !(changed <= f64::MAX)
+        if !changed.is_finite()
             || beyond(tail(&rest), size, LEFT_OUT)
             || beyond(tail(&slope), k, LEFT_OUT_SLOPE)
         {

@@ -161,8 +161,8 @@ impl LoopMemory {
                 numbers.truncate(numbers.len() - 2);
             }
         };
-        for number in next..turns.len() {
-            close(&mut numbers, turns[number]);
+        for (number, turn) in turns.iter().enumerate().skip(next) {
+            close(&mut numbers, *turn);
             numbers.push(number);
         }
         close(&mut numbers, now);
