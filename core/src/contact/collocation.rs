@@ -16,61 +16,6 @@ pub(super) struct Collocation {
     pub(super) barycentric: [f64; NODES],
 }
 
-/// A number for each pair of nodes.
-pub(super) type Square = [[f64; NODES]; NODES];
-
-/// LU factors of a matrix over the nodes, with row pivoting: of a size that the compiler knows.
-pub(super) struct NodeFactors {
-    lu: Square,
-    inverse: [f64; NODES],
-    pivots: [usize; NODES],
-}
-
-impl NodeFactors {
-    pub(super) fn new(mut lu: Square) -> Self {
-        let (mut inverse, mut pivots) = ([0.0; NODES], [0; NODES]);
-        for k in 0..NODES {
-            let size = |i: &usize| lu[*i][k].abs();
-            let best =
-                (k + 1..NODES).fold(k, |best, i| if size(&i) > size(&best) { i } else { best });
-            lu.swap(k, best);
-            pivots[k] = best;
-            inverse[k] = 1.0 / lu[k][k];
-            let (above, below) = lu.split_at_mut(k + 1);
-            let own = &above[k];
-            for row in below {
-                let factor = row[k] * inverse[k];
-                // Whole rows, without a remainder; what is known stands left of the pivot.
-                let mut kept = *row;
-                row.iter_mut().zip(own).for_each(|(a, b)| *a -= factor * b);
-                kept[k] = factor;
-                row[..=k].copy_from_slice(&kept[..=k]);
-            }
-        }
-        Self { lu, inverse, pivots }
-    }
-
-    /// Solves in place for some columns, node after node.
-    pub(super) fn solve<const COLUMNS: usize>(&self, right: &mut [[f64; COLUMNS]; NODES]) {
-        for (k, pivot) in self.pivots.iter().enumerate() {
-            right.swap(k, *pivot);
-        }
-        for k in 0..NODES {
-            let own = right[k];
-            for (row, lower) in right.iter_mut().zip(&self.lu).skip(k + 1) {
-                row.iter_mut().zip(&own).for_each(|(a, b)| *a -= lower[k] * b);
-            }
-        }
-        for k in (0..NODES).rev() {
-            right[k].iter_mut().for_each(|a| *a *= self.inverse[k]);
-            let own = right[k];
-            for (row, upper) in right.iter_mut().zip(&self.lu).take(k) {
-                row.iter_mut().zip(&own).for_each(|(a, b)| *a -= upper[k] * b);
-            }
-        }
-    }
-}
-
 /// Legendre polynomials of orders up to NODES at x in [−1, 1].
 pub(super) fn legendre(x: f64) -> [f64; NODES + 1] {
     let mut p = [1.0; NODES + 1];

@@ -11,9 +11,9 @@
 //! Gauss-Legendre quadrature (Hairer and Wanner 1996, section IV.5), which serve the Fourier
 //! integrals as well. The derivative of φ in the coefficients follows from the panel's own matrix.
 
-use super::collocation::{Collocation, NodeFactors, Square, NODES};
+use super::collocation::{Collocation, NODES};
 use super::coulomb_drive::Drive;
-use crate::solve::Block;
+use crate::solve::{Block, BlockFactors};
 
 /// Steps of Newton's method for a panel, which starts close and needs three.
 const STEPS: usize = 12;
@@ -158,28 +158,26 @@ impl Panel {
             basis,
             rate: Block::default(),
         };
-        let mut factors = None;
+        let mut factors = BlockFactors::default();
         let (mut last, mut shrunk) = (f64::INFINITY, 1.0_f64);
         for _ in 0..STEPS {
             panel.evaluate();
             // One matrix serves as long as the steps shrink fast.
-            let known = factors.take().filter(|_| shrunk < SHRINKING);
-            let matrix = known.unwrap_or_else(|| panel.factors());
-            let mut step: [[f64; 1]; NODES] = std::array::from_fn(|i| {
+            if shrunk.is_nan() || shrunk >= SHRINKING {
+                factors = panel.factors();
+            }
+            let mut step: [f64; NODES] = std::array::from_fn(|i| {
                 let turned = table.integral[i].iter().zip(&panel.turning).map(|(a, g)| a * g);
-                [panel.angle[i] - angle - length * turned.sum::<f64>()]
+                panel.angle[i] - angle - length * turned.sum::<f64>()
             });
-            matrix.solve(&mut step);
-            factors = Some(matrix);
-            let step = step.as_flattened();
-            panel.angle.iter_mut().zip(step).for_each(|(angle, step)| *angle -= step);
+            factors.solve_vector(&mut step);
+            panel.angle.iter_mut().zip(&step).for_each(|(angle, step)| *angle -= step);
             let largest = step.iter().fold(0.0_f64, |most, step| most.max(step.abs()));
             if !largest.is_finite() {
                 return None;
             }
             // What a step leaves is smaller than itself by as much as it was than the one before.
-            // The first one turns the traction, and changes the matrix, by its own size at most.
-            shrunk = if last.is_finite() { largest / last } else { largest };
+            shrunk = if last.is_finite() { largest / last } else { 1.0 };
             last = largest;
             if largest * shrunk.min(1.0) <= ROUNDING {
                 panel.evaluate();
@@ -203,14 +201,14 @@ impl Panel {
     }
 
     /// Factors of the matrix of the collocation, `1 − h A ∂φ'/∂φ`.
-    fn factors(&self) -> NodeFactors {
+    fn factors(&self) -> BlockFactors {
         let table = Collocation::get();
-        let mut matrix: Square = table.integral;
-        for (i, row) in matrix.iter_mut().enumerate() {
-            row.iter_mut().zip(&self.restoring).for_each(|(a, by)| *a *= -self.length * by);
-            row[i] += 1.0;
+        let mut matrix = Block::identity(NODES);
+        for (i, integral) in table.integral.iter().enumerate() {
+            let row = matrix.row_mut(i).iter_mut().zip(integral.iter().zip(&self.restoring));
+            row.for_each(|(entry, (a, by))| *entry -= self.length * a * by);
         }
-        NodeFactors::new(matrix)
+        BlockFactors::new(matrix)
     }
 
     pub(super) fn end(&self) -> f64 {
@@ -295,15 +293,13 @@ impl Panel {
         let slots = harmonics.slots();
         let factors = self.factors();
         // Gain on the start's derivative and on sources at the nodes.
-        let mut answers = [[1.0; 1 + NODES]; NODES];
-        for (row, integral) in answers.iter_mut().zip(&table.integral) {
-            row[1..].copy_from_slice(&integral.map(|a| self.length * a));
-        }
-        factors.solve(&mut answers);
         let mut gain = Block::zeros(NODES, 1 + NODES);
-        for (i, row) in answers.iter().enumerate() {
-            gain.row_mut(i)[..=NODES].copy_from_slice(row);
+        for (i, integral) in table.integral.iter().enumerate() {
+            let row = gain.row_mut(i);
+            row[0] = 1.0;
+            row[1..=NODES].copy_from_slice(&integral.map(|a| self.length * a));
         }
+        factors.solve(&mut gain);
         let mut source = Block::zeros(1 + NODES, rate.len());
         source.row_mut(0)[..rate.len()].copy_from_slice(rate);
         if coefficients {
