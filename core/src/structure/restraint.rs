@@ -25,6 +25,9 @@ pub(super) fn restrain(stiffness: MatRef<'_, f64>, out: &mut Receptance) {
         out.by_ratio.iter_mut().for_each(|change| *change *= factor * factor);
         return;
     }
+    if contacts == 0 {
+        return;
+    }
     if contacts <= FEW && !sloped {
         return restrain_few(stiffness, out);
     }
