@@ -12,6 +12,7 @@ mod flutter_compliance;
 mod interface;
 mod massless;
 mod modal;
+mod modal_receptance;
 mod modes;
 mod poles;
 mod ports;

@@ -1,0 +1,194 @@
+//! What a modal compliance answers: receptances and displacements as sums over its modes.
+
+use super::contact_modes::ContactModes;
+use super::modal::{ModalBase, ModalCompliance};
+use super::modes::RESONANCE;
+use super::restraint::restrain;
+use super::spectrum::Spectrum;
+use super::{Compliance, Outline, Quantity, Receptance, Request};
+use crate::Error;
+use faer::linalg::matmul::matmul;
+use faer::{c64, Accum, Mat, MatMut, Par};
+
+impl ModalCompliance {
+    /// Weight of a mode at `omega` and its derivative in ω.
+    fn weight(&self, j: usize, omega: f64) -> (c64, c64) {
+        if j + self.statics < self.right.ncols() {
+            self.spectrum.weight(j, omega)
+        } else {
+            (c64::new(1.0, 0.0), c64::new(0.0, 0.0))
+        }
+    }
+
+    fn singular(&self) -> Error {
+        Error::SingularStiffness { lowest: self.outline.stuck.first().copied().unwrap_or(0.0) }
+    }
+
+    fn load(&self, harmonic: usize) -> Option<&[c64]> {
+        self.loads.iter().find(|(order, _)| *order == harmonic).map(|(_, load)| load.as_slice())
+    }
+
+    /// Refuses a frequency at which an undamped mode of the stuck base resonates.
+    fn check_resonance(&self, harmonic: usize, omega: f64) -> Result<(), Error> {
+        let Spectrum::Real { omega_squared, damping, .. } = &self.spectrum else {
+            return Ok(());
+        };
+        if self.base != ModalBase::Stuck {
+            return Ok(());
+        }
+        let squared = (harmonic as f64 * omega).powi(2);
+        for (j, (&natural, &c)) in omega_squared.iter().zip(damping).enumerate() {
+            let distance = (natural - squared).abs() + harmonic as f64 * omega * c.abs();
+            if distance > RESONANCE * squared {
+                continue;
+            }
+            let seen = (0..self.contact_left.nrows())
+                .any(|i| self.contact_left[(i, j)].norm() > 0.0)
+                || self.load(harmonic).is_some_and(|load| load[j].norm() > 0.0);
+            if seen {
+                return Err(Error::UndampedResonance {
+                    omega,
+                    harmonic,
+                    natural: natural.max(0.0).sqrt(),
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Sums the modes into `g` (and its derivative) for all contact pairs and the load.
+    fn sum_modes(&self, harmonic: usize, omega: f64, out: &mut Receptance) {
+        let contacts = self.contacts();
+        let order = harmonic as f64;
+        let load = self.load(harmonic);
+        if !self.negative.is_empty() {
+            out.by_ratio.resize(contacts * contacts, c64::new(0.0, 0.0));
+        }
+        let by_products = contacts >= ContactModes::FEWEST && self.negative.is_empty();
+        if by_products {
+            self.multiply_modes(order, omega, out);
+        }
+        for j in 0..self.right.ncols() {
+            let (weight, slope) = self.weight(j, order * omega);
+            let slope = order * slope;
+            for column in (0..contacts).filter(|_| !by_products) {
+                let left = self.contact_left[(column, j)];
+                let (value, change) = (weight * left, slope * left);
+                for row in 0..contacts {
+                    let right = self.contact_right[(row, j)];
+                    out.contact[column * contacts + row] += right * value;
+                    if let Some((contact, _)) = &mut out.slope {
+                        contact[column * contacts + row] += right * change;
+                    }
+                }
+                let Some(negative) = self.negative.get(j) else { continue };
+                let change = weight * weight * c64::new(0.0, -order * omega * negative) * left;
+                for row in 0..contacts {
+                    out.by_ratio[column * contacts + row] += self.contact_right[(row, j)] * change;
+                }
+            }
+            let Some(load) = load else { continue };
+            for row in 0..contacts {
+                let response = self.contact_right[(row, j)] * load[j];
+                out.stuck[row] += response * weight;
+                if let Some((_, stuck)) = &mut out.slope {
+                    stuck[row] += response * slope;
+                }
+            }
+        }
+    }
+
+    /// The sum for the pairs of many contacts, as a product of matrices.
+    fn multiply_modes(&self, order: f64, omega: f64, out: &mut Receptance) {
+        let (contacts, modes) = (self.contacts(), self.right.ncols());
+        let weights: Vec<[c64; 2]> = (0..modes)
+            .map(|j| {
+                let (weight, slope) = self.weight(j, order * omega);
+                [weight, order * slope]
+            })
+            .collect();
+        let slope = out.slope.as_mut().map(|(contact, _)| contact);
+        for (which, sum) in [&mut out.contact].into_iter().chain(slope).enumerate() {
+            let left =
+                Mat::from_fn(modes, contacts, |j, i| self.contact_left[(i, j)] * weights[j][which]);
+            let sum = MatMut::from_column_major_slice_mut(sum, contacts, contacts);
+            let (right, one) = (self.contact_right.as_ref(), c64::new(1.0, 0.0));
+            matmul(sum, Accum::Replace, right, left.as_ref(), one, Par::Seq);
+        }
+    }
+}
+
+impl Compliance for ModalCompliance {
+    fn contacts(&self) -> usize {
+        self.contact_right.nrows()
+    }
+
+    fn dofs(&self) -> usize {
+        self.right.nrows()
+    }
+
+    fn outline(&self) -> &Outline {
+        &self.outline
+    }
+
+    fn contact_modes(&self) -> Option<&ContactModes> {
+        self.contact_modes.as_deref()
+    }
+
+    fn receptance(&self, harmonic: usize, omega: f64, out: &mut Receptance) -> Result<(), Error> {
+        out.reset(self.contacts());
+        if harmonic == 0 {
+            self.flexibility.as_ref().ok_or_else(|| self.singular())?.receptance(out);
+            return Ok(());
+        }
+        self.check_resonance(harmonic, omega)?;
+        self.sum_modes(harmonic, omega, out);
+        if let Some(stiffness) = &self.restraint {
+            restrain(stiffness.as_ref(), out);
+        }
+        Ok(())
+    }
+
+    fn displacement(&self, request: &Request<'_>, out: &mut [c64]) -> Result<(), Error> {
+        let Request { harmonic, omega, quantity, contact, slip_load, observe } = *request;
+        out.fill(c64::new(0.0, 0.0));
+        let (loaded, sloped) = (quantity != Quantity::OfSlip, quantity == Quantity::Slope);
+        if harmonic == 0 {
+            // Static displacements do not know of a frequency.
+            if !sloped {
+                let flexibility = self.flexibility.as_ref().ok_or_else(|| self.singular())?;
+                flexibility.displacement(loaded, slip_load, observe, out);
+            }
+            return Ok(());
+        }
+        // The free structure carries the whole contact force, the stuck one the slip load alone.
+        let mut forces = slip_load.to_vec();
+        if let Some(stiffness) = &self.restraint {
+            for (i, force) in forces.iter_mut().enumerate() {
+                *force -= (0..contact.len()).map(|j| stiffness[(i, j)] * contact[j]).sum::<c64>();
+            }
+        }
+        let (order, load) = (harmonic as f64, self.load(harmonic).filter(|_| loaded));
+        for j in 0..self.right.ncols() {
+            let mut excitation = load.map_or(c64::new(0.0, 0.0), |load| load[j]);
+            for (i, force) in forces.iter().enumerate() {
+                excitation += self.contact_left[(i, j)] * force;
+            }
+            let (weight, slope) = self.weight(j, order * omega);
+            let coordinate = if sloped { order * slope } else { weight } * excitation;
+            let shape = self.right.col(j);
+            for (x, &dof) in out.iter_mut().zip(observe) {
+                *x += shape[dof] * coordinate;
+            }
+        }
+        Ok(())
+    }
+
+    fn effort(&self, observed: usize) -> [f64; 2] {
+        let (modes, contacts) = (self.right.ncols() as f64, self.contacts() as f64);
+        // A factorisation and as many solutions as there are contacts.
+        let restraint = if self.restraint.is_some() { contacts.powi(3) } else { 0.0 };
+        let displacement = modes * (20.0 + 1.5 * (contacts + observed as f64));
+        [modes * (20.0 + 1.5 * contacts * contacts) + restraint, displacement]
+    }
+}
