@@ -42,7 +42,7 @@ const OF_SOLUTION: f64 = 6.0;
 /// less, estimates at low frequencies stop short of the stuck modes, and of the error.
 const ALLOWED: f64 = 3.0;
 /// The same of a ring, of which nearly all is reckoned.
-const ALLOWED_OF_RING: f64 = 1.3;
+const ALLOWED_OF_RING: f64 = 1.6;
 /// The same of many contacts, whose products with the modes are reckoned as they are.
 const ALLOWED_OF_MANY: f64 = 0.5;
 
