@@ -1,9 +1,11 @@
 """Claims of chapter III: verdicts and numbers."""
 
 BY_ROUNDING = 5e-2
-"""Tolerance of counts of runs from poor starts, and of a median over few steps: the last bits decide some
-of them. Four kernels of OpenBLAS, each for processors of its own, gave 61.7 to 64.1, 50 to 53.1, 79 to 83, 79
-to 82 and 0.170 to 0.183."""
+"""Tolerance of counts of runs from poor starts, and of a median over few steps.
+
+The last bits decide some of them. Four kernels of OpenBLAS, each for processors of its own, gave
+61.7 to 64.1, 50 to 53.1, 79 to 83, 79 to 82 and 0.170 to 0.183.
+"""
 
 NUMBERS: dict[str, tuple[str, dict[str, tuple[float, float]]]] = {
     "never-unloads": (
@@ -71,7 +73,10 @@ NUMBERS: dict[str, tuple[str, dict[str, tuple[float, float]]]] = {
         "holds with limits",
         {"Broyden": (63.0, BY_ROUNDING), "Newton": (32.812, 1e-2), "Newton here": (100, 0)},
     ),
-    "poor-guess": ("false", {"single harmonic": (96.875, 1e-2), "poor starts": (51.5, BY_ROUNDING)}),
+    "poor-guess": (
+        "false",
+        {"single harmonic": (96.875, 1e-2), "poor starts": (51.5, BY_ROUNDING)},
+    ),
     "newton-chord": ("holds", {"order of Newton-Chord": (1.0, 1e-2)}),
     "faster-than-newton": ("false", {}),
     "more-iterations": ("holds", {"iterations of Broyden over Newton": (1.2289, 1e-2)}),
