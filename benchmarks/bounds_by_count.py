@@ -1,13 +1,17 @@
 """Bounds over residual tractions, by count: random systems that nobody has chosen.
 
-``python benchmarks/bounds_by_count.py [systems] [residuals]``: per system how far motions under
-other residuals leave the bounds, how wide these are, and what they cost beside a plain curve.
+Usage::
+
+    python benchmarks/bounds_by_count.py --systems 20 --residuals 20
+
+Per system how far motions under other residuals leave the bounds, how wide these are, and what they
+cost beside a plain curve.
 Motions that are known to be unstable do not count: nothing stays on them.
 """
 
 from __future__ import annotations
 
-import sys
+import argparse
 from time import process_time
 
 import numpy as np
@@ -79,7 +83,14 @@ def outside(seed: int, residuals: int) -> str:
     )
 
 
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--systems", type=int, default=20)
+    parser.add_argument("--residuals", type=int, default=20)
+    given = parser.parse_args()
+    for seed in range(given.systems):
+        print(outside(seed, given.residuals), flush=True)
+
+
 if __name__ == "__main__":
-    systems, count = (int(one) for one in (sys.argv[1:] + ["20", "20"][len(sys.argv) - 1 :]))
-    for seed in range(systems):
-        print(outside(seed, count), flush=True)
+    main()
