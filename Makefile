@@ -3,6 +3,8 @@
 VENV   := .venv
 PYTHON ?= python3
 BIN    := $(VENV)/bin
+# Of the random tests: the same cases for everybody. Others are tried with make test SEED=$$RANDOM.
+SEED   ?= 1999
 
 .PHONY: demo test wheel quick rust python docs bench peers clean tools
 .DEFAULT_GOAL := help
@@ -60,13 +62,13 @@ quick: $(VENV)/.developed
 rust:
 	cargo fmt --all --check
 	cargo clippy --release --workspace --all-targets -- -D warnings
-	cargo test --release --workspace
+	PROPTEST_RNG_SEED=$(SEED) cargo test --release --workspace
 
 python: $(VENV)/.developed
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
-	$(BIN)/pytest -n auto --dist loadfile
+	$(BIN)/pytest -n auto --dist loadfile --hypothesis-seed=$(SEED)
 
 docs: $(VENV)/.developed
 	PYTHONPATH=docs $(BIN)/zensical build --strict
