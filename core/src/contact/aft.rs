@@ -10,7 +10,7 @@ use super::law::{HarmonicForce, ReturnMapJacobian};
 use super::samples::Samples;
 use super::{
     AssumedStart, ContactLaw, Describing, Element, Held, Motion, Parameter, Phase, PointSummary,
-    Residual, SlipLoad,
+    Residual, SlipLoad, Unslipped,
 };
 use crate::Error;
 use faer::Mat;
@@ -81,8 +81,19 @@ impl<L: Deref<Target: ContactLaw>> HarmonicForce for Aft<L> {
             return;
         }
         let begun = self.begin(motion);
-        let round = self.march(&samples, &begun, false);
         let stiffness = self.law.stiffness();
+        if let Some(Unslipped { value, rate }) = self.unslipped(&samples, &begun) {
+            if harmonics.has_mean() {
+                out.value.iter_mut().step_by(slots).zip(value).for_each(|(mean, q)| *mean = q);
+                out.active = rate.iter().any(|rate| *rate != 0.0);
+                let (size, means) = (count * slots, out.tangent.chunks_exact_mut(count * slots));
+                for (row, rate) in means.step_by(slots).zip(rate.chunks_exact(size)) {
+                    row.copy_from_slice(rate);
+                }
+            }
+            return;
+        }
+        let round = self.march(&samples, &begun, false);
         let lost = |n: usize, i: usize| {
             let u = samples.at(n);
             let stuck: f64 = (0..count).map(|j| stiffness[(i, j)] * u[j]).sum();
@@ -128,10 +139,12 @@ impl<L: Deref<Target: ContactLaw>> HarmonicForce for Aft<L> {
             return;
         }
         let samples = Samples::of(motion, self.samples);
-        if self.stuck(&samples, motion.residual).is_some() {
+        let begun = self.begin(motion);
+        let sticks = self.stuck(&samples, motion.residual).is_some();
+        if sticks || self.unslipped(&samples, &begun).is_some() {
             return;
         }
-        let round = self.march(&samples, &self.begin(motion), true);
+        let round = self.march(&samples, &begun, true);
         let spans = (self.samples / samples.count) as f64;
         // Without slip all work is elastic, and only rounding is left of it.
         let slips = round.slipping.iter().any(|share| *share > 0.0);

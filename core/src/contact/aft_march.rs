@@ -5,7 +5,7 @@ use super::law::ReturnMapJacobian;
 use super::march_rate::{follows, is_elastic, FrictionWork, Rate};
 use super::periodic_march::SLOW;
 use super::samples::Samples;
-use super::{Aft, AssumedStart, ContactLaw, Element, Motion, Residual};
+use super::{Aft, AssumedStart, ContactLaw, Element, Motion, Residual, Unslipped};
 use std::f64::consts::TAU;
 use std::ops::Deref;
 
@@ -81,6 +81,12 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
             let (displacement, state) = self.law.beginning();
             AssumedStart { displacement, state, rate: Vec::new() }
         })
+    }
+
+    /// See [`ContactLaw::unslipped`]; mirrored, a constant part would change its sign.
+    pub(super) fn unslipped(&self, samples: &Samples, begun: &AssumedStart) -> Option<Unslipped> {
+        let lost = self.law.unslipped(begun, &samples.displacement)?;
+        (samples.sign > 0.0 || lost.value.iter().all(|q| *q == 0.0)).then_some(lost)
     }
 
     /// The first instant, reached without any slip as far as the law admits it.

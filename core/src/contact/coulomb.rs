@@ -21,7 +21,7 @@ use super::dual::{Dual, Real};
 use super::law::{HarmonicForce, ReturnMapJacobian};
 use super::parameter::number;
 use super::slip_element::Element;
-use super::{AssumedStart, ContactLaw, Held, Motion, Parameter, Parameters};
+use super::{AssumedStart, ContactLaw, Held, Motion, Parameter, Parameters, Unslipped};
 use crate::Error;
 use faer::Mat;
 use std::sync::Arc;
@@ -329,6 +329,27 @@ impl ContactLaw for Coulomb {
         (0..self.displacements())
             .map(|i| if i < self.directions { tangential } else { normal })
             .collect()
+    }
+
+    /// The cone is convex: what is in it at all instants does not leave it on the lines between them.
+    fn unslipped(&self, begun: &AssumedStart, displacement: &[f64]) -> Option<Unslipped> {
+        let k = self.tangential_stiffness;
+        let offset = self.pair(|i| k * begun.displacement[i] - begun.state[i]);
+        let inside = |u: &[f64]| {
+            let limit = self.friction * self.pressing(u);
+            let [x, y] = self.pair(|i| k * u[i] - offset[i]);
+            limit > 0.0 && squared([x, y]) <= limit * limit
+        };
+        let count = self.displacements();
+        if self.pressing(&begun.displacement) <= 0.0
+            || !displacement.chunks_exact(count).all(inside)
+        {
+            return None;
+        }
+        let mut value = offset[..self.directions].to_vec();
+        value.resize(count, self.balanced() - self.normal_at_rest());
+        let rows = begun.rate.len() / count * self.directions;
+        Some(Unslipped { value, rate: begun.rate[..rows].iter().map(|rate| k * rate).collect() })
     }
 
     fn return_map(

@@ -57,6 +57,16 @@ impl SlipLoad {
     }
 }
 
+/// What slip takes off the stuck spring's force of a motion on which nothing slips: it is constant, and
+/// varies with where the motion is assumed to begin.
+#[derive(Debug, Clone)]
+pub struct Unslipped {
+    /// `D u − f` \[N\].
+    pub value: Vec<f64>,
+    /// Its derivative in the coefficients of the motion, row by row; rows may be missing at the end [N/m].
+    pub rate: Vec<f64>,
+}
+
 /// What one point of a contact does over a period.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct PointSummary {
@@ -171,6 +181,13 @@ pub trait ContactLaw: Send + Sync + std::fmt::Debug {
     /// law that has no such rule, or under half-wave symmetry, which leaves nothing to assume: it
     /// begins at its [`Self::beginning`].
     fn assumed(&self, _motion: Motion<'_>) -> Option<AssumedStart> {
+        None
+    }
+
+    /// What slip takes off the stuck spring's force of a march from a start through displacements,
+    /// instant after instant, on which nothing slips or opens. Nothing if something may; a law that
+    /// cannot tell is marched.
+    fn unslipped(&self, _begun: &AssumedStart, _displacement: &[f64]) -> Option<Unslipped> {
         None
     }
 

@@ -63,7 +63,9 @@ pub(crate) use described::Described;
 pub use describing::Describing;
 pub use elastic::Elastic;
 pub use jenkins::Jenkins;
-pub use law::{ContactLaw, HarmonicForce, Motion, PointSummary, ReturnMapJacobian, SlipLoad};
+pub use law::{
+    ContactLaw, HarmonicForce, Motion, PointSummary, ReturnMapJacobian, SlipLoad, Unslipped,
+};
 pub use loading_curve::LoadingCurve;
 pub(crate) use loading_curve::REVERSALS;
 pub use masing::Masing;
