@@ -118,7 +118,7 @@ impl<L: Deref<Target: ContactLaw>> HarmonicForce for Aft<L> {
             }
         }
         if tangent {
-            self.differentiate(&samples, &begun, &round.averaged, slots, &mut out.tangent);
+            self.differentiate(&samples, &begun, &round.restarts, slots, &mut out.tangent);
         }
         out.halve_means(harmonics);
     }

@@ -4,25 +4,30 @@
 use super::law::ReturnMapJacobian;
 use super::march_rate::{follows, is_elastic, FrictionWork, Rate};
 use super::periodic_march::SLOW;
+use super::restart::Restart;
 use super::samples::Samples;
 use super::{Aft, AssumedStart, ContactLaw, Element, Motion, Residual, Unslipped};
+use faer::{Mat, MatRef};
 use std::f64::consts::TAU;
 use std::ops::Deref;
 
 /// Rounds after which a march is taken as it is. An elastoplastic contact forgets its start with
 /// the first slip in either direction; several coupled points take some rounds more.
 const MOST_ROUNDS: usize = 200;
-/// Change of the state over a round, relative to the largest, that counts as none.
+/// Change of the state over a round, relative to the largest, that counts as none, …
 const PERIODIC: f64 = 1e-13;
+/// … and that the fixed point of the linearised round takes up without an error.
+const SMALL: f64 = 1e-7;
+/// Rounds after which slip is taken to recur, so that its fixed point is sought.
+const PUSHES: usize = 3;
 
 /// One round of states that repeat.
 pub(super) struct Round {
     /// States and forces, instant after instant.
     pub(super) state: Vec<f64>,
     pub(super) force: Vec<f64>,
-    /// Rounds marched until the states repeated, each with whether its start was the mean of the
-    /// two before.
-    pub(super) averaged: Vec<bool>,
+    /// Rounds marched until the states repeated, by how each has begun.
+    pub(super) restarts: Vec<Restart>,
     /// Sum over the steps of the share in slip, per displacement.
     pub(super) slipping: Vec<f64>,
     /// Friction work of every displacement over the span, if it was asked for.
@@ -126,7 +131,7 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
         let mut round = Round {
             state: vec![0.0; samples.count * size],
             force: vec![0.0; samples.count * count],
-            averaged: vec![false],
+            restarts: vec![Restart::GoesOn],
             slipping: Vec::new(),
             work: Vec::new(),
             // What a contact keeps that follows the motion varies as slip does.
@@ -136,7 +141,9 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
         let coupled = self.law.elements().is_some_and(|elements| elements.iter().all(couples));
         let friction = account.then(|| FrictionWork::new(self.law.stiffness(), coupled));
         let mut last_change = f64::INFINITY;
+        let (mut pushes, mut jump): (usize, Option<(Vec<f64>, f64)>) = (0, None);
         loop {
+            let mut lap = (pushes >= PUSHES).then(|| Mat::<f64>::identity(size, size));
             round.slipping = vec![0.0; count];
             round.work = vec![0.0; count];
             let before = step.state.clone();
@@ -145,8 +152,13 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
                 let old = (n - 1) * count;
                 round.state[(n - 1) * size..n * size].copy_from_slice(&step.state);
                 round.force[old..old + count].copy_from_slice(&step.force);
-                // What has slipped needs no more than its forces, unless the work is asked for.
-                self.advance(samples, n, &mut step, account || !round.slipped);
+                // What has slipped needs no more than its forces, unless more is asked for.
+                let derived = account || !round.slipped || lap.is_some();
+                self.advance(samples, n, &mut step, derived);
+                if let Some(lap) = &mut lap {
+                    *lap =
+                        MatRef::from_row_major_slice(&step.jacobian.by_state, size, size) * &*lap;
+                }
                 round.slipped = round.slipped || departs(&step);
                 largest = step.state.iter().fold(largest, |most, z| most.max(z.abs()));
                 let shares = round.slipping.iter_mut().zip(&step.jacobian.slipping);
@@ -163,18 +175,44 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
             step.force.iter_mut().for_each(|f| *f *= samples.sign);
             let change = step.state.iter().zip(&before).map(|(a, b)| (a - b).abs());
             let change = change.fold(0.0, f64::max);
-            if change <= PERIODIC * largest || round.averaged.len() == MOST_ROUNDS {
+            let slips = lap.as_ref().is_none_or(|lap| *lap != Mat::<f64>::identity(size, size));
+            let small = |change: f64| change <= SMALL * largest;
+            // A jump that was not small is made sure of by another one.
+            let unsure = jump.take().filter(|(_, by)| !small(*by));
+            let periodic = change <= PERIODIC * largest && unsure.is_none();
+            if let Some((state, by)) = unsure.filter(|_| !slips) {
+                // Beyond where slip ends: the march goes on from before the jump.
+                (step.state, last_change, pushes) = (state, by, 0);
+                round.restarts.pop();
+                round.restarts.push(Restart::GoesOn);
+                self.settle(samples, &mut step);
+                continue;
+            }
+            if periodic || round.restarts.len() == MOST_ROUNDS {
                 return round;
             }
-            let alternates = samples.sign < 0.0 && change > SLOW * last_change;
-            if alternates {
-                step.average(&before);
-                let (u, Step { state, force, .. }) = (samples.at(0), &mut step);
-                self.law.return_map(u, u, state, force, None);
+            let restart = match lap {
+                Some(lap) => {
+                    let restart = Restart::at_fixed_point(&(samples.sign * lap));
+                    jump = restart.is_some().then(|| (step.state.clone(), change));
+                    restart.unwrap_or(Restart::GoesOn)
+                }
+                None if samples.sign < 0.0 && change > SLOW * last_change => Restart::Mean,
+                None => Restart::GoesOn,
+            };
+            if !matches!(restart, Restart::GoesOn) {
+                restart.apply(&mut step.state, &before);
+                self.settle(samples, &mut step);
             }
-            round.averaged.push(alternates);
-            last_change = change;
+            round.restarts.push(restart);
+            (pushes, last_change) = (pushes + 1, change);
         }
+    }
+
+    /// Gives a state at the first instant its force.
+    fn settle(&self, samples: &Samples, step: &mut Step) {
+        let (u, Step { state, force, .. }) = (samples.at(0), step);
+        self.law.return_map(u, u, state, force, None);
     }
 
     /// Derivative of the march, start and history included.
@@ -182,7 +220,7 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
         &self,
         samples: &Samples,
         begun: &AssumedStart,
-        rounds: &[bool],
+        rounds: &[Restart],
         slots: usize,
         out: &mut [f64],
     ) {
@@ -196,12 +234,10 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
         let weight = 2.0 / samples.count as f64;
         let mut sum = vec![0.0; slots];
         let mut before = (step.state.clone(), rate.clone());
-        for (round, averaged) in rounds.iter().enumerate() {
+        for (round, restart) in rounds.iter().enumerate() {
             let last = round + 1 == rounds.len();
-            if *averaged {
-                step.average(&before.0);
-                rate.average(&before.1);
-            }
+            restart.apply(&mut step.state, &before.0);
+            rate.restart(&before.1, restart);
             before = (step.state.clone(), rate.clone());
             for n in 1..=samples.count {
                 if last {
@@ -279,13 +315,6 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
             forces.extend(scaled(&force, sign));
         }
         (states, forces)
-    }
-}
-
-impl Step {
-    /// Begins a round from the mean of its state and that of the round before.
-    pub(super) fn average(&mut self, before: &[f64]) {
-        self.state.iter_mut().zip(before).for_each(|(z, before)| *z = 0.5 * (*z + before));
     }
 }
 

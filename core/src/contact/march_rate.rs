@@ -2,6 +2,7 @@
 //! friction work.
 
 use super::law::ReturnMapJacobian;
+use super::restart::Restart;
 use super::Elastic;
 use faer::Mat;
 
@@ -30,9 +31,9 @@ impl Rate {
         self.value.iter_mut().for_each(|rate| *rate *= sign);
     }
 
-    /// The mean of this derivative and another.
-    pub(super) fn average(&mut self, other: &Self) {
-        self.value.iter_mut().zip(&other.value).for_each(|(a, b)| *a = 0.5 * (*a + b));
+    /// What a round begins with, from what the round before has begun with.
+    pub(super) fn restart(&mut self, before: &Self, restart: &Restart) {
+        restart.apply(&mut self.value, &before.value);
     }
 
     /// Takes the derivative through one return map, from an instant with one basis, or from rest, to

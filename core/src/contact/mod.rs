@@ -40,6 +40,7 @@ mod periodic_march;
 mod point_state;
 mod registry;
 mod residual;
+mod restart;
 mod samples;
 mod shear_layer;
 mod slider;
