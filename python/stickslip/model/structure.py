@@ -99,7 +99,7 @@ class Structure(Dofs):
             if damping is not None and not isinstance(damping, DampingLaw):
                 damping = known.in_si(real_matrix(damping, "damping"), "damping", names)
         M, K = _symmetric(M, "mass", names), _symmetric(K, "stiffness", names)
-        massless = ~M.any(axis=1)
+        massless = np.asarray(~M.any(axis=1))
         _require_positive(M, ~massless, names)
         C = _damping(damping, M, K, names)
         _require_undamped(C, massless, names)
@@ -254,8 +254,8 @@ def _require_undamped(damping: Matrix, massless: NDArray[np.bool_], names: tuple
     acting = massless & (damping.any(axis=0) | damping.any(axis=1))
     if acting.any():
         raise ModelError(
-            f"damping: it acts on dof {brief(names[int(acting.argmax())])}, which has no mass; give "
-            "this dof a mass, or leave its damping out"
+            f"damping: it acts on dof {brief(names[int(acting.argmax())])}, which has no mass; "
+            "give this dof a mass, or leave its damping out"
         )
 
 
