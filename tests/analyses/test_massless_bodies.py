@@ -57,6 +57,27 @@ def test_peaks_of_no_mass():
     np.testing.assert_allclose(none.amplitude, light.amplitude, rtol=1e-5)
 
 
+def test_automatic_harmonics_of_no_mass():
+    """What kinks leave out is in the estimate; a point that would cost too much says so."""
+    model = wedge(0.0)
+    assert model.structure.mass[model.structure.index("damper.x")].tolist() == [0.0] * 6
+    exact = ss.exact_response(model, GRID, observe=["left.x"]).amplitude("left.x")
+    for order in (15, 39):
+        frf = ss.forced_response(model, GRID, order, observe=["left.x"], stability=False)
+        error = np.abs(frf.amplitude("left.x") - exact)
+        assert (error < frf.error_estimate("left.x")).all()
+        assert (frf.error_estimate("left.x") < 5.0 * error).all()
+    frf = ss.forced_response(model, GRID, stability=False, tolerance=3e-3)
+    assert frf.converged.all()
+    np.testing.assert_allclose(frf.amplitude("left.x"), exact, rtol=3e-3)
+    how = {"dof": "left.x", "omega": (95.0, 115.0), "tolerance": 3e-3}
+    curve = ss.damper_curve(model, friction=[0.2], **how)
+    assert [str(one) for one in curve.status] == ["converged"]
+    assert curve.amplitude[0] == pytest.approx(
+        ss.exact_response(model, curve.omega, observe=["left.x"]).amplitude("left.x")[0], rel=3e-3
+    )
+
+
 def sheared(damper):
     """Two masses that move along the faces: normal forces stay what they are."""
     structure = ss.Structure(

@@ -9,6 +9,7 @@ import scipy.sparse
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import stickslip as ss
 from stickslip.errors import ModelError
 from stickslip.model.coupling import Coupling
 from stickslip.model.structure import ModalDamping, Rayleigh, Structure, join
@@ -106,13 +107,39 @@ def test_mass_of_mixed_units_is_positive():
     Structure(np.diag([1.0, 1e-22]), np.diag([1.0, 1e-20]))
 
 
+def test_a_dof_without_mass():
+    """It follows statically; ratios are those of the modes of the others."""
+    mass = np.diag([1.0, 0.0, 2.0])
+    stiffness = np.array([[5.0, -2.0, 0.0], [-2.0, 4.0, -2.0], [0.0, -2.0, 7.0]])
+    whole = Structure(mass, stiffness, ModalDamping(0.1), ["a", "b", "c"])
+    assert whole.mass[1, 1] == 0.0
+    kept = np.ix_([0, 2], [0, 2])
+    condensed = stiffness[kept] - np.outer([-2.0, -2.0], [-2.0, -2.0]) / 4.0
+    own = Structure(mass[kept], condensed, ModalDamping(0.1))
+    np.testing.assert_allclose(whole.damping[kept], own.damping, rtol=1e-12)
+    assert not whole.damping[1].any()
+    with pytest.raises(ModelError, match="damping: it acts on dof 'b', which has no mass"):
+        Structure(mass, stiffness, Rayleigh(stiffness=1e-3), ["a", "b", "c"])
+    frequencies = [
+        ss.natural_frequencies(ss.Model(one, [], [ss.Force(one.dofs[0], 1.0)]))
+        for one in (whole, own)
+    ]
+    # A small mass stands in where none is.
+    np.testing.assert_allclose(frequencies[0][:2], frequencies[1], rtol=1e-6)
+
+
+def test_a_model_without_any_mass():
+    nothing = Structure(np.zeros((2, 2)), np.eye(2))
+    with pytest.raises(ModelError, match="mass: not positive definite"):
+        ss.forced_response(ss.Model(nothing, [], [ss.Force("0", 1.0)]), [1.0], 1)
+
+
 BAD_MASS = [
-    (np.diag([1.0, 0.0, 1.0]), r"smallest eigenvalue 0 \(mostly dof 'b'\).*condense massless"),
+    ([[1, 1, 0], [1, 0, 0], [0, 0, 1]], r"mostly dof 'b'\).*condense massless"),
     (np.diag([1.0, 1.0, -2.0]), r"smallest eigenvalue -2 \(mostly dof 'c'\)"),
     ([[1, 2, 0], [2, 1, 0], [0, 0, 1]], "smallest eigenvalue -1 "),
     (SQUARE, "must be positive definite"),
     ([[1, 1, 0], [1, 1 + 1e-15, 0], [0, 0, 1]], "must be positive definite"),
-    (np.zeros((3, 3)), "smallest eigenvalue 0 "),
     (np.diag([1.0, np.nan, 1.0]), r"mass: nan at \('b', 'b'\); every entry must be finite"),
     (np.diag([1.0, 1.0, np.inf]), r"mass: inf at \('c', 'c'\)"),
     (M + 0j, "mass: complex entries; give real matrices"),

@@ -83,6 +83,12 @@ impl ForcedBalance<'_> {
             &ask,
         )?;
         let done = errors.is_some();
+        // DOFs without mass move with kinks: harmonics fall with the square of their order, and the error
+        // with the first power of H, so that the extended balance has a known share of it.
+        let massless = !self.model.structure().massless().is_empty();
+        let unseen =
+            if massless { order as f64 / (order - harmonics.highest()) as f64 } else { 1.0 };
+        let errors = errors.map(|own| own.into_iter().map(|error| unseen * error).collect());
         point.error_estimate = errors.unwrap_or_else(|| vec![f64::NAN; observed]);
         Ok(done)
     }

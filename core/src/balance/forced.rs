@@ -185,8 +185,16 @@ impl<'a> ForcedBalance<'a> {
         start: Option<&Unknowns>,
     ) -> Result<Point, Error> {
         let solved = self.attempt(resolution, omega, start)?;
-        let held_up = solved.status == PointStatus::Stalled && resolution.samples.is_none();
-        if !held_up || self.follows() {
+        let failed = !matches!(solved.status, PointStatus::Converged | PointStatus::NotComputed);
+        if !failed || resolution.samples.is_some() || self.follows() {
+            return Ok(solved);
+        }
+        if start.is_none() {
+            if let Some(point) = self.from_fewer(resolution, omega)? {
+                return Ok(point);
+            }
+        }
+        if solved.status != PointStatus::Stalled {
             return Ok(solved);
         }
         // Samples blur the edges between states at which an exact law may hold Newton's method up.
@@ -200,7 +208,7 @@ impl<'a> ForcedBalance<'a> {
     }
 
     /// The chosen method from a start, and what follows where it fails.
-    fn attempt(
+    pub(super) fn attempt(
         &mut self,
         resolution: Resolution,
         omega: f64,

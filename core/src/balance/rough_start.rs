@@ -5,9 +5,10 @@
 //! harmonics know them, too, at a small part of the price.
 
 use super::condensed::Condensed;
-use super::forced::ForcedBalance;
+use super::forced::{is_bounded, ForcedBalance};
 use super::modal_work::is_large;
 use super::settings::{Method, Resolution};
+use super::solution::Point;
 use super::unknowns::Unknowns;
 use crate::fourier::Harmonics;
 use crate::solve::{newton, NewtonSettings, Outcome, System as _};
@@ -60,6 +61,52 @@ impl ForcedBalance<'_> {
         };
         self.add_profile(&equations.profile);
         Ok(found.then(|| start.with_lower(table.harmonics(), &x)))
+    }
+}
+
+impl ForcedBalance<'_> {
+    /// A point that Newton's method does not reach from the stuck response: from half as many harmonics,
+    /// or half of those, whichever are solved from there, and back up.
+    pub(super) fn from_fewer(
+        &mut self,
+        fine: Resolution,
+        omega: f64,
+    ) -> Result<Option<Point>, Error> {
+        let least = self.model.compliance().forced_harmonics().last().copied().unwrap_or(1).max(1);
+        let halves = std::iter::successors(Some(fine.harmonics), |highest| Some(highest / 2));
+        let mut levels = vec![fine.harmonics];
+        for highest in halves.skip(1).take_while(|&highest| highest >= least) {
+            levels.push(highest);
+            let coarse = Resolution { harmonics: highest, ..fine };
+            let Some(mut start) = self.from_stuck(coarse, omega)? else { continue };
+            for &harmonics in levels.iter().rev().skip(1) {
+                let point = self.attempt(Resolution { harmonics, ..fine }, omega, Some(&start))?;
+                match point.unknowns.clone().filter(|_| point.is_solved()) {
+                    Some(_) if harmonics == fine.harmonics => return Ok(Some(point)),
+                    Some(unknowns) => start = unknowns,
+                    None => break,
+                }
+            }
+        }
+        Ok(None)
+    }
+
+    /// What Newton's method alone finds from the stuck response, if anything.
+    fn from_stuck(&mut self, at: Resolution, omega: f64) -> Result<Option<Unknowns>, Error> {
+        let table = self.table(at.harmonics);
+        let model = self.evaluated(at.samples)?;
+        let interrupted = self.interruption();
+        let mut equations = Condensed::new(model, &table, self.settings.residual, false);
+        equations.watch(&interrupted);
+        if equations.set_omega(omega).is_err() {
+            return Ok(None);
+        }
+        let mut x = equations.stuck_response().to_vec();
+        let outcome = newton(&mut equations, &mut x, self.settings.newton).outcome;
+        let found = outcome == Outcome::Converged && is_bounded(&x, equations.stuck_response());
+        self.add_profile(&equations.profile);
+        let harmonics = table.harmonics().clone();
+        Ok(found.then_some(Unknowns { harmonics, values: x }))
     }
 }
 

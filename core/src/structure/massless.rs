@@ -25,6 +25,12 @@ pub(super) fn without_mass(mass: MatRef<'_, f64>) -> Vec<usize> {
     (0..mass.nrows()).filter(|&i| mass[(i, i)] <= NONE * largest).collect()
 }
 
+/// Gives the degrees of freedom without mass a trace, so that the matrix has a factor.
+pub(super) fn trace(mass: &mut Mat<f64>, massless: &[usize]) {
+    let largest = (0..mass.nrows()).map(|i| mass[(i, i)]).fold(0.0, f64::max);
+    massless.iter().for_each(|&i| mass[(i, i)] = 0.5 * NONE * largest);
+}
+
 /// Puts substitutes into a mass matrix; `stiffness` is that of every degree of freedom with all others
 /// fixed [N/m].
 pub(super) fn substitute(mass: &mut Mat<f64>, massless: &[usize], stiffness: &[f64]) {

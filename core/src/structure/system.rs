@@ -1,6 +1,6 @@
 //! Mass, damping and stiffness.
 
-use super::massless::{substitute, without_mass, StuckModes};
+use super::massless::{substitute, trace, without_mass, StuckModes};
 use crate::Error;
 use faer::{Mat, MatRef};
 
@@ -52,12 +52,15 @@ impl Structure {
                 }
             }
         }
+        let massless = without_mass(mass);
+        let mut mass = symmetric("mass", mass)?;
+        trace(&mut mass, &massless);
         let structure = Self {
-            mass: symmetric("mass", mass)?,
+            mass,
             damping: damping.to_owned(),
             stiffness: symmetric("stiffness", stiffness)?,
             proportional: false,
-            massless: without_mass(mass),
+            massless,
         };
         structure.mass.llt(faer::Side::Lower).map_err(|_| Error::IndefiniteMass)?;
         Ok(structure)

@@ -13,7 +13,7 @@ from stickslip.checks import brief, unknown
 from stickslip.disk.bladed_disk import ALL_SECTORS
 from stickslip.errors import ModelError
 from stickslip.model import Model
-from stickslip.model.notable import loaded_dofs, physical_dofs
+from stickslip.model.notable import loaded_dofs, massless_dofs, physical_dofs
 from stickslip.model.state import State
 from stickslip.results.arrays import Int
 from stickslip.settings.balance import BalanceKeys, HarmonicSettings, ObserveKeys
@@ -36,11 +36,12 @@ def driving_dofs(
     """Return the positions among `dofs` of those that automatic harmonics and steps follow.
 
     All, if they were named; else the outputs and those with a force or a contact. None are all.
+    Those without mass move with kinks, which ask for far more harmonics than what they press on.
     """
     shown = {outputs} if isinstance(outputs, str) else set(outputs)
     for name in sorted(shown - set(dofs)):
         raise ModelError(f"outputs: {unknown('dof', name, dofs)}")
-    followed = set() if named else shown | set(loaded_dofs(model))
+    followed = set() if named else shown | (set(loaded_dofs(model)) - set(massless_dofs(model)))
     driving = [position for position, dof in enumerate(dofs) if dof in followed]
     return np.array(driving, dtype=np.int64)
 

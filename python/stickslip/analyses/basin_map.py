@@ -15,7 +15,7 @@ from stickslip.checks import members, unknown, whole_number
 from stickslip.errors import ModelError
 from stickslip.memory import require_numbers
 from stickslip.model import Model
-from stickslip.model.damping import held_stiffness
+from stickslip.model.damping import held_stiffness, modes_of
 from stickslip.model.state import State
 from stickslip.results.arrays import Float
 from stickslip.results.basin_map import BasinMap
@@ -116,14 +116,12 @@ def _over_axes(model: Model, axes: Grid, base: State) -> Float:
 
 def _direction(model: Model, axis: Axis) -> Float:
     """Return the displacements per unit along an axis, shape (N,)."""
-    from scipy.linalg import eigh
-
     structure = model.structure
     if isinstance(axis, str):
         direction: Float = np.eye(len(structure))[structure.index(axis)]
         return direction
     stiffness = held_stiffness(structure.stiffness, structure, model.contacts)
-    _, shapes = eigh(stiffness, structure.mass)
+    _, shapes = modes_of(stiffness, structure.mass)
     shape = shapes[:, axis]
     return np.asarray(shape / shape[np.abs(shape).argmax()], dtype=np.float64)
 

@@ -18,8 +18,6 @@ Sum: TypeAlias = dict[str, float]
 """Factors of degrees of freedom, whose sum is a displacement."""
 Vector: TypeAlias = tuple[float, ...]
 
-NO_MASS = 1e-200
-"""Mass that stands for none [kg, kg m2]: the core condenses such degrees of freedom statically."""
 PLANAR, SPATIAL = ("x", "y", "rotation"), ("x", "y", "z", "rx", "ry", "rz")
 """Degrees of freedom of a rigid body in a plane and in space."""
 
@@ -125,7 +123,7 @@ class Body(Protocol):
         """Return the displacement of a point along each axis, a sum of degrees of freedom."""
 
     def structure(self) -> Structure:
-        """Return the body by itself; a mass of `NO_MASS` is none."""
+        """Return the body by itself."""
 
 
 @dataclass(frozen=True, init=False)
@@ -205,13 +203,12 @@ class RigidBody:
         ]
 
     def structure(self) -> Structure:
-        """Return mass without stiffness; where there is none, `NO_MASS`."""
+        """Return mass without stiffness."""
         size = len(self.dofs)
         mass = np.zeros((size, size))
-        mass[: self.axes, : self.axes] = (self.mass or NO_MASS) * np.eye(self.axes)
+        mass[: self.axes, : self.axes] = self.mass * np.eye(self.axes)
         if self.inertia is not None:
-            turns = np.reshape(self.inertia, (size - self.axes,) * 2)
-            mass[self.axes :, self.axes :] = turns if turns.any() else NO_MASS * np.eye(len(turns))
+            mass[self.axes :, self.axes :] = np.reshape(self.inertia, (size - self.axes,) * 2)
         return Structure(mass, np.zeros_like(mass), dofs=self.dofs)
 
 
@@ -272,7 +269,7 @@ class FlexibleBody:
         return [{dof: 1.0} for dof in point.dofs]
 
     def structure(self) -> Structure:
-        """Return the body; it has mass."""
+        """Return the body."""
         return self.own
 
 

@@ -22,6 +22,7 @@ from stickslip.disk.aerodynamics import (
 from stickslip.disk.bladed_disk import BladedDisk
 from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
+from stickslip.model.damping import modes_of
 from stickslip.model.model import AnyMatrix, PointRef
 from stickslip.model.structural import condensed_stiffness
 from stickslip.model.structure import Structure
@@ -244,12 +245,10 @@ class _Mode(NamedTuple):
 
 
 def _mode(disk: BladedDisk, slips: set[tuple[int, int]], diameter: int, mode: int) -> _Mode:
-    from scipy.linalg import eigh
-
     delta = disk.angle(diameter)
     mass, damping, stiffness = disk.matrices.wave(delta)
     stiffness = stiffness + _stuck(disk, slips, delta)
-    _, shapes = eigh(stiffness, mass)
+    _, shapes = modes_of(stiffness, mass)
     shape = np.asarray(shapes[:, mode], dtype=np.complex128)
     square, own = ((shape.conj() @ one @ shape).real for one in (stiffness, damping))
     return _Mode(float(square), float(own), shape, mass @ shape)
@@ -351,12 +350,10 @@ class InfluenceCoefficients:
         if self.dof is not None:
             unit: NDArray[np.float64] = np.eye(len(structure))[structure.index(self.dof)]
             return unit
-        from scipy.linalg import eigh
-
         mode = whole_number(self.mode, "influence coefficients: mode")
         if mode >= len(structure):
             raise ModelError(
                 f"influence coefficients: mode {mode}; a blade has {len(structure)}, counted from 0"
             )
-        _, shapes = eigh(structure.stiffness, structure.mass)
+        _, shapes = modes_of(structure.stiffness, structure.mass)
         return np.asarray(structure.mass @ shapes[:, mode], dtype=np.float64)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Protocol, TypeAlias, runtime_checkable
+from typing import Any, Protocol, TypeAlias, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -142,9 +142,7 @@ class ModalDamping(_DampingLaw):
 
     def matrix(self, mass: Matrix, stiffness: Matrix, dofs: Sequence[str] | None = None) -> Matrix:
         """Return the damping matrix [kg/s] of mass and stiffness [kg], [N/m], shape (N, N)."""
-        from scipy.linalg import eigh
-
-        size = len(mass)
+        size = int(mass.any(axis=1).sum())
         ratios = np.asarray(self.ratio, dtype=np.float64)
         if ratios.ndim == 1 and ratios.size != size:
             raise ModelError(
@@ -152,11 +150,9 @@ class ModalDamping(_DampingLaw):
             )
         held = stiffness
         if self.stuck:
-            names = Dofs(map(str, range(size)) if dofs is None else dofs)
+            names = Dofs(map(str, range(len(mass))) if dofs is None else dofs)
             held = held_stiffness(stiffness, names, self.stuck)
-        order = _graded(held, mass)
-        squares, modes = eigh(held[np.ix_(order, order)], mass[np.ix_(order, order)])
-        modes = modes[np.argsort(order)]
+        squares, modes = modes_of(held, mass)
         if squares[0] < -1e-8 * np.abs(squares).max():
             raise ModelError(
                 f"damping: the lowest mode has omega^2 = {squares[0]:.6g} < 0, a ratio means "
@@ -173,9 +169,34 @@ class ModalDamping(_DampingLaw):
 DampingLaw: TypeAlias = Rayleigh | ModalDamping
 
 
+def modes_of(stiffness: NDArray[Any], mass: NDArray[Any]) -> tuple[Matrix, NDArray[Any]]:
+    """Return squares of natural frequencies, shape (n,), and mass-normalised modes, shape (N, n).
+
+    There are as many as degrees of freedom with mass; those without follow statically.
+    """
+    from scipy.linalg import eigh
+
+    own = mass.any(axis=1)
+    if not own.all():
+        try:
+            carried = -np.linalg.solve(stiffness[np.ix_(~own, ~own)], stiffness[np.ix_(~own, own)])
+        except np.linalg.LinAlgError:
+            raise ModelError(
+                "modes: nothing holds a dof without mass but contacts; give it a mass, or a spring"
+            ) from None
+        held = stiffness[np.ix_(own, own)] + stiffness[np.ix_(own, ~own)] @ carried
+        squares, shapes = modes_of(0.5 * (held + held.conj().T), mass[np.ix_(own, own)])
+        modes = np.empty((len(mass), len(shapes)), shapes.dtype)
+        modes[own], modes[~own] = shapes, carried @ shapes
+        return squares, modes
+    order = _graded(stiffness, mass)
+    squares, modes = eigh(stiffness[np.ix_(order, order)], mass[np.ix_(order, order)])
+    return squares, modes[np.argsort(order)]
+
+
 def _graded(stiffness: Matrix, mass: Matrix) -> NDArray[np.intp]:
     """Return the order of dofs in which their modes keep their digits: the lightest first."""
-    rates = np.abs(np.diag(stiffness)) / np.diag(mass)
+    rates = np.abs(np.diag(stiffness)) / np.diag(mass).real
     if not rates.max() > _GRADED * rates.min():
         return np.arange(len(mass))
     return np.argsort(-rates, kind="stable")

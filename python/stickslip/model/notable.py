@@ -28,6 +28,14 @@ def loaded_dofs(model: Model) -> tuple[str, ...]:
     return tuple(dict.fromkeys((*loaded, *touching)))
 
 
+def massless_dofs(model: Model) -> tuple[str, ...]:
+    """Return the degrees of freedom without mass."""
+    structure = model.structure
+    return tuple(
+        dof for dof, row in zip(structure.dofs, structure.mass, strict=True) if not row.any()
+    )
+
+
 def notable_dofs(model: Model, observed: Sequence[str]) -> tuple[str, ...]:
     """Choose the DOFs to show when none are named.
 

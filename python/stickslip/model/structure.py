@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from numbers import Real
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stickslip.checks import (
     Matrix,
@@ -39,7 +40,8 @@ class Structure(Dofs):
     Parameters
     ----------
     mass : array_like or scipy.sparse matrix, shape (N, N)
-        Symmetric and positive definite [kg].
+        Symmetric and positive definite [kg]. A row of zeros is a degree of freedom without mass:
+        stiffness and contacts alone decide how it moves, and nothing may damp it.
     stiffness : array_like or scipy.sparse matrix, shape (N, N)
         Symmetric [N/m]. It may be singular: a free structure has rigid-body modes. An asymmetry of
         mass or stiffness up to 1e-8 of the largest entry, as printed digits leave it, is averaged
@@ -57,8 +59,8 @@ class Structure(Dofs):
     ------
     ModelError
         If a matrix is complex, not finite, not square or of another size than the mass; if mass
-        or stiffness is not symmetric; if the mass is not positive definite; if a name is missing,
-        empty or given twice.
+        or stiffness is not symmetric; if the mass is not positive definite; if damping acts on a
+        degree of freedom without mass; if a name is missing, empty or given twice.
 
     Examples
     --------
@@ -97,8 +99,10 @@ class Structure(Dofs):
             if damping is not None and not isinstance(damping, DampingLaw):
                 damping = known.in_si(real_matrix(damping, "damping"), "damping", names)
         M, K = _symmetric(M, "mass", names), _symmetric(K, "stiffness", names)
-        _require_positive(M, names)
+        massless = np.asarray(~M.any(axis=1))
+        _require_positive(M, ~massless, names)
         C = _damping(damping, M, K, names)
+        _require_undamped(C, massless, names)
         law = damping if isinstance(damping, DampingLaw) else None
         proportional = law.proportional if law is not None else not C.any()
         set_fields(self, mass=M, stiffness=K, damping=C, dofs=names)
@@ -246,8 +250,17 @@ def _symmetric(matrix: Matrix, entry: str, names: tuple[str, ...]) -> Matrix:
     return 0.5 * matrix + 0.5 * matrix.T
 
 
-def _require_positive(mass: Matrix, names: tuple[str, ...]) -> None:
-    if _is_positive(mass):
+def _require_undamped(damping: Matrix, massless: NDArray[np.bool_], names: tuple[str, ...]) -> None:
+    acting = massless & (damping.any(axis=0) | damping.any(axis=1))
+    if acting.any():
+        raise ModelError(
+            f"damping: it acts on dof {brief(names[int(acting.argmax())])}, which has no mass; "
+            "give this dof a mass, or leave its damping out"
+        )
+
+
+def _require_positive(mass: Matrix, inert: NDArray[np.bool_], names: tuple[str, ...]) -> None:
+    if not inert.any() or _is_positive(mass[np.ix_(inert, inert)]):
         return
     values, vectors = np.linalg.eigh(mass)
     name = names[int(np.abs(vectors[:, 0]).argmax())]
