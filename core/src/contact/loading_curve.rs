@@ -7,6 +7,11 @@ use std::sync::Arc;
 /// Reversals that a state tells of a contact without sliders, behind its origin.
 pub(crate) const REVERSALS: usize = 12;
 
+/// Steps to where it has a force.
+const WAYS: usize = 100;
+/// Share of the stiffness at which nothing is left of the force.
+const EXHAUSTED: f64 = 1e-12;
+
 /// The force of first loading, and what slip takes off the elastic one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LoadingCurve {
@@ -70,6 +75,27 @@ impl LoadingCurve {
         } else {
             Vec::new()
         }
+    }
+
+    /// How far beyond a displacement u >= 0 first loading leads to a force greater by `more` \[N\], or next
+    /// to all that it ever gives, and the derivative of that way in u.
+    pub(crate) fn way_to(&self, u: f64, more: f64) -> [f64; 2] {
+        let force = |u: f64| self.stiffness * u - self.loss(u).value;
+        let slope = |u: f64| self.stiffness - self.loss(u).slope;
+        let (wanted, mut at) = (force(u) + more, u);
+        // The curve is concave: each step falls short of what is left.
+        for _ in 0..WAYS {
+            let rise = slope(at);
+            if rise <= EXHAUSTED * self.stiffness {
+                return [at - u, -1.0];
+            }
+            let by = (wanted - force(at)) / rise;
+            at += by.max(0.0);
+            if by <= f64::EPSILON * at {
+                break;
+            }
+        }
+        [at - u, slope(u) / slope(at) - 1.0]
     }
 
     /// Work of a closed loop \[J\]: `8 ∫ F du − 4 a F(a)` with half its range a.

@@ -107,6 +107,12 @@ impl Reversals {
         Self { origin: 0.0, turns: turns.collect() }
     }
 
+    /// Becomes its mirror image.
+    pub(crate) fn mirror(&mut self) {
+        self.origin = -self.origin;
+        self.turns.iter_mut().flatten().for_each(|value| *value = -*value);
+    }
+
     /// The branch in a direction.
     pub(super) fn branch(&self, sign: f64) -> Branch {
         match self.turns.last() {

@@ -55,7 +55,7 @@ pub fn limit_cycles(
     let onset = Onset::new(&given, settings.mode, ratio)?;
     // Without orbits a balance goes without its stability.
     let orbits = match CycleOrbits::new(&family) {
-        Err(Error::NoEvents { .. } | Error::NoSliders { .. }) if !settings.exact => None,
+        Err(Error::NoEvents { .. }) if !settings.exact => None,
         orbits => orbits?,
     };
     let orbits = match orbits.map(|orbits| orbits.paced(onset.mode.omega)).transpose() {
