@@ -113,6 +113,12 @@ impl Reversals {
         self.turns.iter_mut().flatten().for_each(|value| *value = -*value);
     }
 
+    /// Moves with the displacement, with the place where loading has begun or without it.
+    pub(crate) fn shift(&mut self, by: f64, with_origin: bool) {
+        self.turns.iter_mut().for_each(|turn| turn[0] += by);
+        self.origin += if with_origin { by } else { 0.0 };
+    }
+
     /// The branch in a direction.
     pub(super) fn branch(&self, sign: f64) -> Branch {
         match self.turns.last() {
