@@ -69,16 +69,6 @@ pub enum Error {
         /// Name of its law.
         law: String,
     },
-    /// A contact law without sliders where exact orbits need them.
-    #[error(
-        "contact {contact}: the law {law} has no sliders, and exact limit cycles and exact travelling waves need them; balance harmonics instead"
-    )]
-    NoSliders {
-        /// The contact, from 1.
-        contact: usize,
-        /// Name of its law.
-        law: String,
-    },
     /// Time-domain analysis of one sector.
     #[error("one sector of a travelling wave has no motion of its own in time; give all sectors")]
     TravellingWave,

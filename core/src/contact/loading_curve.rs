@@ -7,6 +7,11 @@ use std::sync::Arc;
 /// Reversals that a state tells of a contact without sliders, behind its origin.
 pub(crate) const REVERSALS: usize = 12;
 
+/// Most steps to where it has a force.
+const WAYS: usize = 60;
+/// Share of the stiffness at which next to nothing is left of it.
+const EXHAUSTED: f64 = 1e-9;
+
 /// The force of first loading, and what slip takes off the elastic one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LoadingCurve {
@@ -70,6 +75,40 @@ impl LoadingCurve {
         } else {
             Vec::new()
         }
+    }
+
+    /// How far beyond a displacement u >= 0 first loading leads to a force greater by `more` \[N\], or next
+    /// to all that it ever gives, and the derivative of that way in u.
+    pub(crate) fn way_to(&self, u: f64, more: f64) -> [f64; 2] {
+        let force = |u: f64| self.stiffness * u - self.loss(u).value;
+        let slope = |u: f64| self.stiffness - self.loss(u).slope;
+        let wanted = force(u) + more;
+        if let Some(exhausted) = self.exhausted().filter(|at| force(*at) <= wanted) {
+            return if exhausted > u { [exhausted - u, -1.0] } else { [0.0, 0.0] };
+        }
+        let mut at = u;
+        // The curve is concave: each step falls short of what is left.
+        for _ in 0..WAYS {
+            let by = ((wanted - force(at)) / slope(at)).max(0.0);
+            at += by;
+            if by <= f64::EPSILON * at {
+                break;
+            }
+        }
+        [at - u, slope(u) / slope(at) - 1.0]
+    }
+
+    /// Displacement at which next to nothing is left of the stiffness, if there is one.
+    fn exhausted(&self) -> Option<f64> {
+        let left = |u: f64| self.stiffness - self.loss(u).slope > EXHAUSTED * self.stiffness;
+        let unit = self.slip_force / self.stiffness;
+        let beyond = (0..WAYS as i32).map(|n| unit * 2.0_f64.powi(n)).find(|u| !left(*u))?;
+        let mut range = [0.0, beyond];
+        for _ in 0..WAYS {
+            let middle = 0.5 * (range[0] + range[1]);
+            range[usize::from(!left(middle))] = middle;
+        }
+        Some(range[1])
     }
 
     /// Work of a closed loop \[J\]: `8 ∫ F du − 4 a F(a)` with half its range a.

@@ -107,6 +107,18 @@ impl Reversals {
         Self { origin: 0.0, turns: turns.collect() }
     }
 
+    /// Becomes its mirror image.
+    pub(crate) fn mirror(&mut self) {
+        self.origin = -self.origin;
+        self.turns.iter_mut().flatten().for_each(|value| *value = -*value);
+    }
+
+    /// Moves with the displacement, with the place where loading has begun or without it.
+    pub(crate) fn shift(&mut self, by: f64, with_origin: bool) {
+        self.turns.iter_mut().for_each(|turn| turn[0] += by);
+        self.origin += if with_origin { by } else { 0.0 };
+    }
+
     /// The branch in a direction.
     pub(super) fn branch(&self, sign: f64) -> Branch {
         match self.turns.last() {

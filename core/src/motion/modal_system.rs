@@ -335,18 +335,6 @@ impl ModalSystem {
         self.microslips.iter().any(|own| own.point == point)
     }
 
-    /// Refuses contacts without sliders.
-    ///
-    /// # Errors
-    /// The first of them.
-    pub(crate) fn require_sliders(&self, model: &Model) -> Result<(), Error> {
-        let Some(own) = self.microslips.first() else { return Ok(()) };
-        let contact = self.bodies.iter().find(|body| body.points.contains(&own.point));
-        let contact = contact.map_or(0, |body| body.contact);
-        let law = model.laws()[contact].name().to_owned();
-        Err(Error::NoSliders { contact: contact + 1, law })
-    }
-
     /// The elements of the contacts.
     pub(crate) fn bodies(&self) -> &[Body] {
         &self.bodies

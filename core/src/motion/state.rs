@@ -319,6 +319,13 @@ impl State {
         [&mut self.displacement, &mut self.velocity, &mut self.force]
     }
 
+    /// Becomes its mirror image.
+    pub(crate) fn mirror(&mut self) {
+        self.parts().into_iter().flatten().for_each(|v| *v = -*v);
+        self.points.iter_mut().for_each(|point| *point = point.mirrored());
+        self.reversals.iter_mut().for_each(Reversals::mirror);
+    }
+
     /// Whether every number is finite and of a size whose square is.
     #[must_use]
     pub fn is_bounded(&self) -> bool {

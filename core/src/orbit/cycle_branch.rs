@@ -55,7 +55,7 @@ pub fn limit_cycles(
     let onset = Onset::new(&given, settings.mode, ratio)?;
     // Without orbits a balance goes without its stability.
     let orbits = match CycleOrbits::new(&family) {
-        Err(Error::NoEvents { .. } | Error::NoSliders { .. }) if !settings.exact => None,
+        Err(Error::NoEvents { .. }) if !settings.exact => None,
         orbits => orbits?,
     };
     let orbits = match orbits.map(|orbits| orbits.paced(onset.mode.omega)).transpose() {
@@ -183,7 +183,7 @@ impl Finder<'_> {
         };
         let mut of_ratio = OrbitCurve::new(&of_ratio, scale, &begin, interrupted);
         let mut curve = OrbitCurve::new(orbits, scale, &begin, interrupted);
-        let sides = self.follow(&mut of_ratio, &mut curve, begin, &crate::solve::norm)?;
+        let sides = self.follow(&mut of_ratio, &mut curve, begin, &crate::solve::norm, scale)?;
         let selected = self.select(&mut curve, &sides);
         let reported = self.table(self.settings.reported);
         let mut quadrature = Quadrature::default();
@@ -267,17 +267,18 @@ impl Finder<'_> {
         let mut of_ratio = CycleBalance::new(&self.given, table, &start, interrupted);
         let mut curve = CycleBalance::new(self.family, table, &start, interrupted);
         let moved = |u: &[f64]| oscillation(table.harmonics(), u);
-        self.follow(&mut of_ratio, &mut curve, start, &moved)
+        self.follow(&mut of_ratio, &mut curve, start, &moved, 1.0)
     }
 
     /// Follows the branch: in r at once, or in r to the ratio asked for and from there to both
-    /// sides in the other scalar; `moved` is the size of the motion.
+    /// sides in the other scalar; `moved` is the size of the motion, of a displacement of 1 m about `unit`.
     fn follow(
         &self,
         of_ratio: &mut dyn Curve,
         curve: &mut dyn Curve,
         start: Vec<f64>,
         moved: &dyn Fn(&[f64]) -> f64,
+        unit: f64,
     ) -> Result<Sides, Error> {
         let settings = self.settings;
         let steps = Steps::default();
@@ -287,7 +288,7 @@ impl Finder<'_> {
         let whole =
             if self.onset.whole > 1.0 { self.onset.amplitude * self.onset.whole } else { 0.0 };
         let shape = self.onset.mode.contact.iter().map(|u| u.norm_sqr()).sum::<f64>();
-        let first = motion(&start).max(whole * (shape / start.len() as f64).sqrt());
+        let first = motion(&start).max(unit * whole * (shape / start.len() as f64).sqrt());
         let endless = |z: &[f64]| motion(z) > ENDLESS * first;
         if *self.family.variation() == Variation::Ratio {
             let lowest = self.lowest_ratio().min(start[start.len() - 1]);

@@ -7,6 +7,7 @@
 //! steers Newton's method. The phase is held across the velocity of the last accepted point, which
 //! never fails, and reported orbits begin at a maximum of the DOF that moves most.
 
+use super::loop_memory::LoopMemory;
 use super::periodic::FASTEST;
 use super::segments::{
     follow, halved, product_eigenvalues, segmentation, Member, Segment, Segmentation,
@@ -43,7 +44,6 @@ impl<'a> CycleOrbits<'a> {
     pub fn new(family: &'a FlutterModel<'a>) -> Result<Option<Self>, Error> {
         let Some(negative) = family.negative() else { return Ok(None) };
         let system = ModalSystem::new(family.model())?;
-        system.require_sliders(family.model())?;
         let damping = system.project(family.model().structure().damping());
         let negative = system.project(negative.as_ref());
         Ok(Some(Self { family, system, damping, negative }))
@@ -74,7 +74,7 @@ impl<'a> CycleOrbits<'a> {
 
     /// Number of unknowns that describe a state.
     fn size(&self) -> usize {
-        2 * self.system.modes() + self.system.strains()
+        2 * self.system.modes() + self.system.strains() + LoopMemory::places(&self.system)
     }
 
     /// Angle that the closing condition spans.
@@ -101,6 +101,8 @@ impl<'a> CycleOrbits<'a> {
     ) -> Result<Vec<f64>, Error> {
         let member = self.member(value)?;
         let coordinates = Transition::new(&member.system, reference);
+        let half = self.family.is_symmetric();
+        let shooting = Shooting::within(&member.system, point.omega, half, None, coordinates);
         let orders = point.harmonics + 1;
         let mut z = Vec::with_capacity(segments * self.size() + 2);
         for number in 0..segments {
@@ -113,9 +115,9 @@ impl<'a> CycleOrbits<'a> {
                     }
                 }
             }
-            let (residual, half) = (self.family.residual(), self.family.is_symmetric());
+            let residual = self.family.residual();
             let state = start_of(member.model(), &member.system, residual, &later, half);
-            z.extend(coordinates.coordinates(&state));
+            z.extend(shooting.unknowns(&state));
         }
         z.extend([point.omega, value]);
         Ok(z)
@@ -215,6 +217,7 @@ impl<'a> OrbitCurve<'a> {
         let half = self.is_symmetric();
         let mut shooting =
             Shooting::within(&member.system, *omega, half, Some(self.interrupted), coordinates);
+        shooting.assume(self.orbits.family.residual());
         visit(&member, &mut shooting, y)
     }
 
@@ -245,9 +248,11 @@ impl<'a> OrbitCurve<'a> {
     /// Rate of the coordinates at a point.
     fn velocity(&self, z: &[f64]) -> Option<Vec<f64>> {
         self.with_shooting(z, |member, shooting, y| {
-            let (state, _) = shooting.coordinates.state(y.get(..self.orbits.size())?);
+            let state = shooting.state(y.get(..self.orbits.size())?);
             let regime = ContactState::new(&member.system, &state.points);
-            Some(shooting.coordinates.rate(&state, &regime))
+            let mut rate = shooting.coordinates.rate(&state, &regime);
+            rate.resize(self.orbits.size(), 0.0);
+            Some(rate)
         })
     }
 
@@ -259,7 +264,8 @@ impl<'a> OrbitCurve<'a> {
             let segments = follow(member, shooting, y, true)?;
             let slipped = slipped(&segments);
             let mut neutral = 0;
-            let reduced = segments.iter().map(|one| {
+            let reduced = segments.into_iter().map(|mut one| {
+                shooting.hold_origins(&mut one.derivative);
                 let (rest, count) = shooting.without_neutral(&one.derivative, &slipped);
                 neutral = count;
                 rest
@@ -286,7 +292,7 @@ impl<'a> OrbitCurve<'a> {
             let starts = y.chunks_exact(self.orbits.size());
             let share = self.orbits.span() / omega / starts.len() as f64;
             let states = starts.enumerate().map(|(number, y)| {
-                let (state, _) = shooting.coordinates.state(y);
+                let state = shooting.state(y);
                 State { time: number as f64 * share, ..state }
             });
             Some(states.collect())

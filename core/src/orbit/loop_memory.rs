@@ -1,69 +1,133 @@
 //! What contacts without sliders remember of a periodic motion, as unknowns of its closing condition.
 //!
-//! In a steady motion all that a contact knows at the end of a period are reversals of that period: the
+//! In a steady motion all that a contact knows at an instant are reversals of the period before it: the
 //! outermost ones, the largest and the least displacement (under half-wave symmetry one of them), and
 //! those behind them that no later loop has closed. Their displacements are functions of the motion,
-//! smooth ones, so that Newton's method closes orbit and memory together. The origin of the first loading says
-//! what elements hold that never slip: the middle of the range, or zero where the motion came from rest.
+//! smooth ones, so that Newton's method closes orbit and memory together. The period before an instant is
+//! put together of pieces: of the segments of multiple shooting, and of a travelling wave, of which a part
+//! of the period is followed, of what the sectors behind have done in it. The origin of the first loading
+//! says what elements hold that never slip.
 
-use crate::contact::{PointState, Residual, REVERSALS};
+use super::rotation::Rotation;
+use crate::contact::{LoadingCurve, PointState, Residual, REVERSALS};
 use crate::motion::{
-    FlowEvent, LinearPhase, LoopDisturbance, Microslip, ModalSystem, State, Transition, Turn,
+    FlowEvent, LinearPhase, LoopDisturbance, ModalSystem, State, Transition, Turn,
 };
 use faer::Mat;
 
-/// Reversals of one contact at the end of a span, each by its number among those of the span.
+/// Numbers of one contact.
+const PLACES: usize = 1 + REVERSALS;
+
+/// What is known of a span of the motion, of each contact.
+#[derive(Debug, Clone, Default)]
+struct Piece {
+    /// Displacements of its reversals \[m\], and at its end.
+    turns: Vec<Vec<f64>>,
+    end: Vec<f64>,
+    /// Derivative of the reversals in all unknowns at its start, these as displacements.
+    slopes: Vec<Vec<Vec<f64>>>,
+}
+
+/// A reversal of the period.
+#[derive(Debug, Clone, Copy)]
+struct Reversal {
+    piece: usize,
+    contact: usize,
+    /// Among those of its contact in the piece.
+    number: usize,
+    /// −1 where its mirror image is meant.
+    sign: f64,
+    /// Displacement \[m\].
+    at: f64,
+}
+
+/// Reversals that one contact remembers at an instant.
 #[derive(Debug, Clone, Default)]
 struct List {
-    /// Numbers of the outermost reversals, of which the middle is the origin.
-    outermost: Option<[usize; 2]>,
-    numbers: Vec<usize>,
+    /// Largest and least of the period; under half-wave symmetry none.
+    outermost: Option<[Reversal; 2]>,
+    kept: Vec<Reversal>,
 }
 
 /// The memory of all contacts without sliders.
 #[derive(Debug)]
 pub(super) struct LoopMemory {
     half_wave: bool,
-    centred: bool,
+    residual: Residual,
+    /// Of each contact where its piece of the period before comes from, with the sign of that.
+    sources: Option<Vec<(usize, f64)>>,
+    /// Parts of the period that the pieces are; 1 but of travelling waves.
+    parts: usize,
+    curves: Vec<LoadingCurve>,
     /// Factor on the displacements of each contact: their squares are energies.
     scale: Vec<f64>,
     start: Option<State>,
     /// Of each contact, the numbers of the start that its reversals are made of.
     kept: Vec<Vec<usize>>,
-    /// Of each contact, its reversals since the start.
-    turns: Vec<Vec<f64>>,
-    lists: Vec<List>,
+    /// The piece that is followed, of so many.
+    piece: usize,
+    count: usize,
+    pieces: Vec<Piece>,
+    /// Before the first piece and behind each one, of each contact.
+    lists: Vec<Vec<List>>,
 }
 
 impl LoopMemory {
     pub(super) fn new(system: &ModalSystem, half_wave: bool) -> Self {
-        let root = |own: &Microslip| match own.curve.stiffness() {
+        let curves: Vec<LoadingCurve> =
+            system.microslips().iter().map(|own| own.curve.clone()).collect();
+        let root = |curve: &LoadingCurve| match curve.stiffness() {
             k if k > 0.0 => k.sqrt(),
             _ => 1.0,
         };
         Self {
             half_wave,
-            centred: true,
-            scale: system.microslips().iter().map(root).collect(),
+            residual: Residual::Centred,
+            sources: None,
+            parts: 1,
+            scale: curves.iter().map(root).collect(),
+            curves,
             start: None,
             kept: Vec::new(),
-            turns: Vec::new(),
+            piece: 0,
+            count: 1,
+            pieces: vec![Piece::default()],
             lists: Vec::new(),
         }
     }
 
     pub(super) fn assume(&mut self, residual: Residual) {
-        self.centred = residual == Residual::Centred;
+        self.residual = residual;
+    }
+
+    /// Takes a span for the part of the period after which sectors have changed their roles.
+    pub(super) fn rotate(&mut self, rotation: &Rotation) {
+        self.sources = Some(rotation.sources(self.scale.len()));
+        (self.parts, self.half_wave) = (rotation.parts, false);
+    }
+
+    /// Takes the next span for one of `count` pieces.
+    pub(super) fn narrow(&mut self, piece: usize, count: usize) {
+        (self.piece, self.count) = (piece, count);
+        self.pieces.resize(count, Piece::default());
     }
 
     /// Number of all unknowns.
     pub(super) fn places(system: &ModalSystem) -> usize {
-        (1 + REVERSALS) * system.microslips().len()
+        PLACES * system.microslips().len()
     }
 
-    /// Rows of the origins behind so many others.
-    pub(super) fn origins(&self, first: usize) -> impl Iterator<Item = usize> + '_ {
-        (0..self.scale.len()).map(move |number| first + number * (1 + REVERSALS))
+    /// Leaves elements that never slip out of a derivative: what they keep is not followed.
+    pub(super) fn hold_origins(&self, matrix: &mut Mat<f64>) {
+        let first = matrix.nrows() - PLACES * self.scale.len();
+        for row in (0..self.scale.len()).map(|number| first + number * PLACES) {
+            for column in 0..matrix.ncols() {
+                // The first way is one from the origin.
+                let moved = matrix[(row, column)];
+                matrix[(row + 1, column)] += moved;
+                matrix[(row, column)] = 0.0;
+            }
+        }
     }
 
     /// The unknowns of a state.
@@ -82,7 +146,7 @@ impl LoopMemory {
         if self.scale.is_empty() {
             return Vec::new();
         }
-        let blocks = unknowns.chunks_exact(1 + REVERSALS).zip(&self.scale);
+        let blocks = unknowns.chunks_exact(PLACES).zip(&self.scale);
         let values: Vec<f64> =
             blocks.flat_map(|(own, scale)| own.iter().map(move |y| y / scale)).collect();
         state.recall_ways(system, &values)
@@ -95,89 +159,180 @@ impl LoopMemory {
         }
         self.kept = self.recall(state, system, unknowns);
         self.start = Some(state.clone());
-        self.turns = vec![Vec::new(); self.scale.len()];
+        let turns = vec![Vec::new(); self.scale.len()];
+        self.pieces[self.piece] = Piece { turns, ..Piece::default() };
     }
 
     /// Follows the flow over the span.
     pub(super) fn follow(&mut self, passage: &FlowEvent<'_>) {
         let FlowEvent::Event { turn: Some((number, turn)), .. } = passage else { return };
+        let turns = &mut self.pieces[self.piece].turns[*number];
         match turn {
-            Turn::Added(u) => self.turns[*number].push(*u),
+            Turn::Added(u) => turns.push(*u),
             Turn::Undone => {
-                self.turns[*number].pop();
+                turns.pop();
             }
             Turn::Forgotten(_) => {}
         }
     }
 
-    /// The unknowns at the end of the span; nothing where a contact has not turned round in it.
-    pub(super) fn end(&mut self, system: &ModalSystem, state: &State) -> Option<Vec<f64>> {
-        let mut unknowns = Vec::with_capacity(Self::places(system));
-        self.lists.clear();
-        for (own, (turns, scale)) in
-            system.microslips().iter().zip(self.turns.iter().zip(&self.scale))
-        {
+    /// The unknowns at the end of the span, with those at its start; of one piece of many what the flow
+    /// remembers, until they are joined. Nothing where a contact has not turned round in the period.
+    pub(super) fn end(
+        &mut self,
+        system: &ModalSystem,
+        state: &State,
+        start: &[f64],
+    ) -> Option<Vec<f64>> {
+        let at = |own: &crate::motion::Microslip| -> f64 {
             let shape = system.contact_shape(own.point).iter();
-            let now: f64 = shape.zip(&state.displacement).map(|(b, x)| b * x).sum();
-            let list = self.list(turns, now)?;
-            let origin = list.outermost.map_or(0.0, |[a, b]| 0.5 * (turns[a] + turns[b]));
-            let mut block = [0.0; 1 + REVERSALS];
-            block[0] = origin;
-            let mut from = origin;
-            for (way, number) in block[1..].iter_mut().zip(&list.numbers) {
-                *way = turns[*number] - from;
-                from = turns[*number];
-            }
-            unknowns.extend(block.iter().map(|value| scale * value));
-            self.lists.push(list);
+            shape.zip(&state.displacement).map(|(b, x)| b * x).sum()
+        };
+        self.pieces[self.piece].end = system.microslips().iter().map(at).collect();
+        if self.count > 1 {
+            return Some(self.numbers(state));
         }
-        Some(unknowns)
+        self.join()?;
+        Some(self.behind(0, start))
     }
 
-    /// The reversals of a span that count at its end.
-    fn list(&self, turns: &[f64], now: f64) -> Option<List> {
+    /// Finds out what is remembered between all pieces; nothing where a contact has not turned round.
+    pub(super) fn join(&mut self) -> Option<()> {
+        let contacts = 0..self.scale.len();
+        let lists = (0..=self.count)
+            .map(|instant| contacts.clone().map(|contact| self.list(instant, contact)).collect());
+        self.lists = lists.collect::<Option<_>>()?;
+        Some(())
+    }
+
+    /// Pieces of the period before an instant, from the oldest to the latest, each with its contact and
+    /// sign.
+    fn history(&self, instant: usize, contact: usize) -> Vec<(usize, usize, f64)> {
+        if let Some(sources) = &self.sources {
+            let mut at = (contact, 1.0);
+            let back = (0..self.parts).map(|_| {
+                let (from, sign) = sources[at.0];
+                at = (from, sign * at.1);
+                (0, at.0, at.1)
+            });
+            let mut pieces: Vec<_> = back.collect();
+            pieces.reverse();
+            return pieces;
+        }
+        let before = if self.half_wave { -1.0 } else { 1.0 };
+        let earlier = (instant..self.count).map(|piece| (piece, contact, before));
+        earlier.chain((0..instant).map(|piece| (piece, contact, 1.0))).collect()
+    }
+
+    /// The reversals that count at an instant.
+    fn list(&self, instant: usize, contact: usize) -> Option<List> {
+        let history = self.history(instant, contact);
+        let turns: Vec<Reversal> = history
+            .iter()
+            .flat_map(|&(piece, contact, sign)| {
+                let all = self.pieces[piece].turns[contact].iter().enumerate();
+                all.map(move |(number, at)| Reversal {
+                    piece,
+                    contact,
+                    number,
+                    sign,
+                    at: sign * at,
+                })
+            })
+            .collect();
+        let &(piece, source, sign) = history.last()?;
+        let now = sign * self.pieces[piece].end[source];
         let most = |of: &dyn Fn(f64) -> f64| {
-            (0..turns.len()).max_by(|a, b| of(turns[*a]).total_cmp(&of(turns[*b])))
+            (0..turns.len()).max_by(|a, b| of(turns[*a].at).total_cmp(&of(turns[*b].at)))
         };
-        let (mut numbers, outermost, next) = if self.half_wave {
+        let (mut kept, outermost, next) = if self.half_wave {
             let largest = most(&f64::abs)?;
-            (vec![largest], None, largest + 1)
+            (vec![turns[largest]], None, largest + 1)
         } else {
             let (high, low) = (most(&|u| u)?, most(&|u| -u)?);
             if high == low {
                 return None;
             }
             let (first, second) = (high.min(low), high.max(low));
-            (vec![first, second], self.centred.then_some([first, second]), second + 1)
+            (vec![turns[first], turns[second]], Some([turns[high], turns[low]]), second + 1)
         };
-        let outer = numbers.len();
-        let close = |numbers: &mut Vec<usize>, u: f64| {
-            while numbers.len() > outer.max(1) {
-                let [.., before, last] = numbers[..] else { break };
-                let sign = 1.0_f64.copysign(turns[before] - turns[last]);
-                if sign * (u - turns[before]) < 0.0 || numbers.len() < outer + 2 {
+        let outer = kept.len();
+        let close = |kept: &mut Vec<Reversal>, u: f64| {
+            while kept.len() > outer.max(1) {
+                let [.., before, last] = kept[..] else { break };
+                let sign = 1.0_f64.copysign(before.at - last.at);
+                if sign * (u - before.at) < 0.0 || kept.len() < outer + 2 {
                     break;
                 }
-                numbers.truncate(numbers.len() - 2);
+                kept.truncate(kept.len() - 2);
             }
         };
-        for (number, turn) in turns.iter().enumerate().skip(next) {
-            close(&mut numbers, *turn);
-            numbers.push(number);
+        for turn in &turns[next..] {
+            close(&mut kept, turn.at);
+            kept.push(*turn);
         }
-        close(&mut numbers, now);
-        while numbers.len() > REVERSALS {
-            let way = |i: usize| (turns[numbers[i + 1]] - turns[numbers[i]]).abs();
-            let inner = outer..numbers.len() - 1;
+        close(&mut kept, now);
+        while kept.len() > REVERSALS {
+            let way = |i: usize| (kept[i + 1].at - kept[i].at).abs();
+            let inner = outer..kept.len() - 1;
             let least = inner.min_by(|a, b| way(*a).total_cmp(&way(*b)))?;
-            numbers.drain(least..least + 2);
+            kept.drain(least..least + 2);
         }
-        Some(List { outermost, numbers })
+        Some(List { outermost, kept })
     }
 
-    /// Derivative of all unknowns at the end of the span in those at its start.
+    /// Place of a reversal among those that were known where a piece began; none of one of the piece.
+    fn place(&self, piece: usize, contact: usize, turn: &Reversal) -> Option<usize> {
+        let known = |own: &Reversal| (own.piece, own.number) == (turn.piece, turn.number);
+        let earlier = turn.piece != piece && self.sources.is_none();
+        earlier.then(|| self.lists[piece][contact].kept.iter().position(known)).flatten()
+    }
+
+    /// The origin of a contact, with its derivative in the largest and the least displacement.
+    fn origin(&self, contact: usize, outermost: Option<[f64; 2]>) -> [f64; 3] {
+        let Some([high, low]) = outermost else { return [0.0; 3] };
+        let (middle, half_range) = (0.5 * (high + low), 0.5 * (high - low));
+        match self.residual {
+            Residual::FromRest => [0.0; 3],
+            Residual::Centred => [middle, 0.5, 0.5],
+            Residual::Value(force) => {
+                let [way, by_range] = self.curves[contact].way_to(half_range, force.abs());
+                let by_range = by_range * force.signum();
+                let origin = middle - way.copysign(force);
+                [origin, 0.5 * (1.0 - by_range), 0.5 * (1.0 + by_range)]
+            }
+        }
+    }
+
+    /// The unknowns behind a piece, with those at its start.
+    pub(super) fn behind(&self, piece: usize, start: &[f64]) -> Vec<f64> {
+        let first = start.len() - PLACES * self.scale.len();
+        let mut unknowns = Vec::with_capacity(PLACES * self.scale.len());
+        for (contact, (list, scale)) in self.lists[piece + 1].iter().zip(&self.scale).enumerate() {
+            let own = &start[first + contact * PLACES..first + (contact + 1) * PLACES];
+            let at = |turn: &Reversal| match self.place(piece, contact, turn) {
+                Some(place) => own[..2 + place].iter().sum::<f64>() / scale,
+                None => turn.at,
+            };
+            let outermost = list.outermost.map(|[high, low]| [at(&high), at(&low)]);
+            let [origin, ..] = self.origin(contact, outermost);
+            let mut block = [0.0; PLACES];
+            block[0] = scale * origin;
+            let mut from = origin;
+            for (way, turn) in block[1..].iter_mut().zip(&list.kept) {
+                let to = at(turn);
+                *way = scale * (to - from);
+                from = to;
+            }
+            unknowns.extend(block);
+        }
+        unknowns
+    }
+
+    /// Derivative of all unknowns at the end of the span in those at its start; of one piece of many
+    /// without what is remembered, until they are joined.
     pub(super) fn along(
-        &self,
+        &mut self,
         coordinates: &Transition<'_>,
         phases: &[LinearPhase],
         held: &[PointState],
@@ -194,34 +349,59 @@ impl LoopMemory {
         let all = size + Self::places(system);
         let mut matrix = Mat::zeros(all, all);
         matrix.get_mut(..size, ..).copy_from(&motion);
-        for (number, (list, turns)) in self.lists.iter().zip(&loops.turns).enumerate() {
-            let first = size + number * (1 + REVERSALS);
-            let scale = self.scale[number];
-            let zero = vec![0.0; all];
-            let origin: Vec<f64> = match list.outermost {
-                Some([a, b]) => {
-                    turns[a].iter().zip(&turns[b]).map(|(a, b)| 0.5 * (a + b)).collect()
-                }
-                None => zero,
-            };
-            let mut from = &origin;
-            for (column, value) in origin.iter().enumerate() {
-                matrix[(first, column)] = scale * value;
-            }
-            for (place, turn) in list.numbers.iter().enumerate() {
-                for column in 0..all {
-                    matrix[(first + 1 + place, column)] =
-                        scale * (turns[*turn][column] - from[column]);
-                }
-                from = &turns[*turn];
-            }
+        for (column, scale) in self.scales(size) {
+            (0..size).for_each(|row| matrix[(row, column)] /= scale);
         }
-        for (number, scale) in self.scale.iter().enumerate() {
-            let first = size + number * (1 + REVERSALS);
-            for column in first..first + 1 + REVERSALS {
-                (0..all).for_each(|row| matrix[(row, column)] /= scale);
-            }
+        self.pieces[self.piece].slopes = loops.turns;
+        if self.count == 1 {
+            self.derive(0, &mut matrix);
         }
         matrix
+    }
+
+    /// Columns of what is remembered, each with its factor.
+    fn scales(&self, first: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let all = self.scale.iter().flat_map(|scale| [*scale; PLACES]);
+        all.enumerate().map(move |(column, scale)| (first + column, scale))
+    }
+
+    /// Completes the derivative of the unknowns behind a piece in those at its start.
+    pub(super) fn derive(&self, piece: usize, matrix: &mut Mat<f64>) {
+        let all = matrix.nrows();
+        let size = all - PLACES * self.scale.len();
+        for (contact, (list, scale)) in self.lists[piece + 1].iter().zip(&self.scale).enumerate() {
+            let first = size + contact * PLACES;
+            let slope = |turn: &Reversal| -> Vec<f64> {
+                if let Some(place) = self.place(piece, contact, turn) {
+                    let own = first..first + 2 + place;
+                    return (0..all).map(|j| f64::from(u8::from(own.contains(&j)))).collect();
+                }
+                match self.pieces[turn.piece].slopes.get(turn.contact) {
+                    Some(own) if turn.piece == piece => {
+                        own[turn.number].iter().map(|slope| turn.sign * slope).collect()
+                    }
+                    _ => vec![0.0; all],
+                }
+            };
+            let mut from = vec![0.0; all];
+            if let Some([high, low]) = &list.outermost {
+                let [_, by_high, by_low] = self.origin(contact, Some([high.at, low.at]));
+                let sums = from.iter_mut().zip(slope(high)).zip(slope(low));
+                sums.for_each(|((to, a), b)| *to = by_high * a + by_low * b);
+            }
+            (0..all).for_each(|column| matrix[(first, column)] = scale * from[column]);
+            for (place, turn) in list.kept.iter().enumerate() {
+                let to = slope(turn);
+                for column in 0..all {
+                    matrix[(first + 1 + place, column)] = scale * (to[column] - from[column]);
+                }
+                from = to;
+            }
+            for row in first..first + PLACES {
+                for (column, scale) in self.scales(size) {
+                    matrix[(row, column)] /= scale;
+                }
+            }
+        }
     }
 }

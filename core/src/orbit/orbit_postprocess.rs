@@ -145,7 +145,7 @@ impl OrbitPostprocess<'_> {
         }
         state.time = 0.0;
         if side < 0.0 {
-            mirror(&mut state);
+            state.mirror();
         }
         Some(Begin { time, side, state })
     }
@@ -164,10 +164,10 @@ fn renew(state: &mut State, start: &State, side: f64) {
             *own = side * new;
         }
     }
-}
-
-/// The mirror image of a state.
-fn mirror(state: &mut State) {
-    state.parts().into_iter().flatten().for_each(|v| *v = -*v);
-    state.points.iter_mut().for_each(|point| *point = point.mirrored());
+    for (own, new) in state.reversals.iter_mut().zip(&start.reversals) {
+        own.clone_from(new);
+        if side < 0.0 {
+            own.mirror();
+        }
+    }
 }

@@ -96,11 +96,6 @@ impl<'a> PeriodicOrbits<'a> {
         };
         let system = Arc::new(ModalSystem::new(with_history.as_ref().unwrap_or(model))?);
         Error::check_dofs(observe, system.modes())?;
-        if let (Residual::Value(value), false) = (settings.residual, system.microslips().is_empty())
-        {
-            let remedy = "exact orbits of contacts without sliders take 'centred' or 'from_rest'";
-            return Err(Error::value("residual", value, remedy));
-        }
         Ok(Self {
             model,
             with_history,
@@ -142,7 +137,6 @@ impl<'a> PeriodicOrbits<'a> {
     /// The model has no such symmetry.
     pub fn rotating(mut self, rotation: Option<Rotation>) -> Result<Self, Error> {
         if let Some(rotation) = &rotation {
-            self.system.require_sliders(self.model)?;
             rotation.check(&self.system)?;
         }
         self.rotation = rotation;
@@ -401,6 +395,8 @@ impl<'a> PeriodicOrbits<'a> {
             let observed = self.observe.len();
             let neutral: Vec<usize> = (0..system.points())
                 .filter(|&i| survey.contacts[i].slip_fraction == 0.0 && system.limits()[i] > 0.0)
+                // Where these begin to load says what they hold.
+                .filter(|&i| !system.is_microslip(i))
                 .collect();
             let range = &survey.range[observed..];
             let middle: Vec<f64> = range.iter().map(|r| 0.5 * (r[0] + r[1])).collect();

@@ -107,6 +107,14 @@ pub(super) fn shifted(
             *x -= b * force / w;
         }
     }
+    // Contacts without sliders slip about the middle of their motion, wherever that is.
+    let moved: Vec<f64> =
+        shifted.displacement.iter().zip(&state.displacement).map(|(to, from)| to - from).collect();
+    for (own, reversals) in system.microslips().iter().zip(&mut shifted.reversals) {
+        let shape = system.contact_shape(own.point).iter();
+        let by = shape.zip(&moved).map(|(b, x)| b * x).sum();
+        reversals.shift(by, residual.follows_middle());
+    }
     Some(shifted)
 }
 

@@ -47,6 +47,18 @@ impl Rotation {
         (place % self.sectors, self.sign * self.wrap.powi(rounds))
     }
 
+    /// Of each of some contacts, in equal numbers in all sectors, the one whose part of the period it has
+    /// just done, and with which sign.
+    pub(super) fn sources(&self, contacts: usize) -> Vec<(usize, f64)> {
+        let each = contacts / self.sectors;
+        let mut sources = vec![(0, 1.0); contacts];
+        for contact in 0..contacts {
+            let (target, sign) = self.target(contact / each);
+            sources[target * each + contact % each] = (contact, sign);
+        }
+        sources
+    }
+
     /// The coordinates that the state a part of a period later has for the sectors at its start.
     pub(super) fn matrix(&self, coordinates: &Transition<'_>, system: &ModalSystem) -> Mat<f64> {
         let (modes, size) = (system.modes(), coordinates.size());

@@ -10,6 +10,7 @@
 use super::shooting::Shooting;
 use crate::model::Model;
 use crate::motion::{ContactState, ModalSystem};
+use crate::solve::System as _;
 use faer::{c64, Mat};
 
 /// Growth of a small change over a segment, as the Frobenius norm of its transition matrix, beyond
@@ -41,7 +42,7 @@ pub(super) fn follow(
     starts: &[f64],
     derivatives: bool,
 ) -> Option<Vec<Segment>> {
-    let size = shooting.coordinates.size();
+    let size = shooting.size();
     let count = starts.len() / size;
     let mut segments = Vec::with_capacity(count);
     for (number, start) in starts.chunks_exact(size).enumerate() {
@@ -49,16 +50,19 @@ pub(super) fn follow(
         let image = shooting.image(start)?;
         let state = shooting.end.as_ref()?;
         let regime = ContactState::new(&member.system, &state.points);
-        let rate = shooting.coordinates.rate(state, &regime);
+        let mut rate = shooting.coordinates.rate(state, &regime);
+        // Reversals stay as they are.
+        rate.resize(size, 0.0);
         let derivative = if derivatives { shooting.derivative() } else { Mat::new() };
         segments.push(Segment { image, rate, derivative, slipped: shooting.slipped().to_vec() });
     }
+    shooting.join(starts, &mut segments)?;
     Some(segments)
 }
 
 /// Start states of twice as many segments.
 pub(super) fn halved(shooting: &mut Shooting<'_>, starts: &[f64]) -> Option<Vec<f64>> {
-    let size = shooting.coordinates.size();
+    let size = shooting.size();
     let count = 2 * (starts.len() / size);
     let mut all = Vec::with_capacity(2 * starts.len());
     for (number, start) in starts.chunks_exact(size).enumerate() {

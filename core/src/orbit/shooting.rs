@@ -3,6 +3,7 @@
 
 use super::loop_memory::LoopMemory;
 use super::rotation::Rotation;
+use super::segments::Segment;
 use crate::contact::{PointState, Residual};
 use crate::motion::{Flow, FlowEvent, LinearPhase, ModalSystem, State, Transition};
 use crate::solve::{norm, System};
@@ -126,6 +127,7 @@ impl<'a> Shooting<'a> {
     /// Confines the flow to the part of a period after which sectors have changed their roles.
     pub(super) fn rotate(&mut self, rotation: Rotation, system: &ModalSystem) {
         self.span = self.period / rotation.parts as f64;
+        self.memory.rotate(&rotation);
         self.rotation = Some((rotation, rotation.matrix(&self.coordinates, system)));
     }
 
@@ -135,6 +137,34 @@ impl<'a> Shooting<'a> {
         let whole = if self.symmetric { 0.5 * self.period } else { self.period };
         self.span = whole / count as f64;
         self.half_wave = self.symmetric && number + 1 == count;
+        self.memory.narrow(number, count);
+    }
+
+    /// Completes what contacts without sliders remember behind segments that have all been followed, in
+    /// their images and derivatives.
+    pub(super) fn join(&mut self, starts: &[f64], segments: &mut [Segment]) -> Option<()> {
+        let (size, count) = (self.coordinates.size(), segments.len());
+        if count == 1 || LoopMemory::places(self.coordinates.system()) == 0 {
+            return Some(());
+        }
+        self.memory.join()?;
+        let all = System::size(self);
+        for (number, (one, start)) in segments.iter_mut().zip(starts.chunks_exact(all)).enumerate() {
+            let side = if self.symmetric && number + 1 == count { -1.0 } else { 1.0 };
+            let numbers = self.memory.behind(number, start);
+            one.image[size..].iter_mut().zip(numbers).for_each(|(to, own)| *to = side * own);
+            if one.derivative.nrows() > 0 {
+                self.memory.derive(number, &mut one.derivative);
+                let mut rows = one.derivative.get_mut(size.., ..);
+                rows *= faer::Scale(side);
+            }
+        }
+        Some(())
+    }
+
+    /// Leaves what elements hold that never slip out of a derivative.
+    pub(super) fn hold_origins(&self, matrix: &mut Mat<f64>) {
+        self.memory.hold_origins(matrix);
     }
 
     /// Whether each point has slipped in the last evaluation.
@@ -165,16 +195,18 @@ impl<'a> Shooting<'a> {
             rotation.spread(&mut self.slipped);
         }
         run.ok()?;
-        let mut y = self.coordinates.coordinates(&state);
-        y.extend(self.memory.end(system, &state)?);
+        let remembered = self.memory.end(system, &state, y)?;
+        let mut image = self.coordinates.coordinates(&state);
         self.end = Some(state);
         if let Some((_, matrix)) = &self.rotation {
-            let turned = matrix * Mat::from_fn(y.len(), 1, |i, _| y[i]);
-            y.iter_mut().enumerate().for_each(|(i, y)| *y = turned[(i, 0)]);
-        } else if self.half_wave {
-            y.iter_mut().for_each(|y| *y = -*y);
+            let turned = matrix * Mat::from_fn(size, 1, |i, _| image[i]);
+            image.iter_mut().enumerate().for_each(|(i, y)| *y = turned[(i, 0)]);
         }
-        Some(y)
+        image.extend(remembered);
+        if self.rotation.is_none() && self.half_wave {
+            image.iter_mut().for_each(|y| *y = -*y);
+        }
+        Some(image)
     }
 
     /// Follows a state through the whole period; `false` where that fails.
@@ -208,7 +240,12 @@ impl<'a> Shooting<'a> {
         self.matrices += 1;
         let along = self.memory.along(&self.coordinates, &self.phases, &self.held, &self.begun);
         let derivative = match &self.rotation {
-            Some((_, matrix)) => matrix * along,
+            Some((_, matrix)) => {
+                let (mut turned, size) = (along, matrix.nrows());
+                let motion = matrix * turned.get(..size, ..);
+                turned.get_mut(..size, ..).copy_from(&motion);
+                turned
+            }
             None if self.half_wave => faer::Scale(-1.0) * along,
             None => along,
         };
@@ -234,10 +271,7 @@ impl<'a> Shooting<'a> {
     /// the number of these.
     fn span_multipliers(&mut self) -> Option<(Vec<c64>, usize)> {
         let mut matrix = self.derivative();
-        // What elements that never slip keep is not followed.
-        for row in self.memory.origins(self.coordinates.size()) {
-            (0..matrix.ncols()).for_each(|column| matrix[(row, column)] = 0.0);
-        }
+        self.hold_origins(&mut matrix);
         let (rest, neutral) = self.without_neutral(&matrix, &self.slipped);
         Some((rest.eigenvalues().ok()?, neutral))
     }

@@ -168,9 +168,10 @@ fn step(
 /// Derivative of the closed orbit in the positions of the sliders, column by column.
 fn responses(shooting: &mut Shooting<'_>, y: &[f64], kept: &[Kept]) -> Option<Mat<f64>> {
     let (size, system) = (y.len(), shooting.coordinates.system());
+    let first = shooting.coordinates.size() - system.strains();
     let strain = |point: usize| {
         let body = system.bodies().iter().find(|body| body.points.contains(&point));
-        body.map(|body| size - system.strains() + body.strains.start)
+        body.map(|body| first + body.strains.start)
     };
     // On the side on which nothing slips.
     let mut aside = y.to_vec();
@@ -188,9 +189,7 @@ fn responses(shooting: &mut Shooting<'_>, y: &[f64], kept: &[Kept]) -> Option<Ma
     let coordinates = &shooting.coordinates;
     let mut right = Mat::zeros(size, kept.len());
     for (target, row) in coordinates.conserved(&slipped) {
-        for (j, value) in row.iter().enumerate() {
-            matrix[(target, j)] = *value;
-        }
+        (0..size).for_each(|j| matrix[(target, j)] = row.get(j).copied().unwrap_or(0.0));
         for (column, one) in kept.iter().enumerate() {
             right[(target, column)] =
                 if strain(one.point) == Some(target) { 1.0 / one.root } else { 0.0 };
@@ -204,7 +203,7 @@ fn responses(shooting: &mut Shooting<'_>, y: &[f64], kept: &[Kept]) -> Option<Ma
 /// the motion cannot be followed.
 fn kept(shooting: &mut Shooting<'_>, assumption: Assumption<'_>, y: &[f64]) -> Option<Vec<Kept>> {
     let system = shooting.coordinates.system();
-    let (mut state, _) = shooting.coordinates.state(y);
+    let mut state = shooting.state(y);
     let displacement = system.contact_displacement(&state.displacement);
     let (mut found, mut shapes) = (Vec::new(), Vec::new());
     for body in system.bodies() {
