@@ -163,3 +163,20 @@ def test_multipliers_of_a_preloaded_contact_whose_motion_alone_is_symmetric(
     expected = exact.multipliers[0, exact.neutral[0] :]
     for power in range(1, expected.size + 1):
         assert (found**power).sum() == pytest.approx((expected**power).sum(), abs=1e-5)
+
+
+@pytest.mark.parametrize("evaluation", ["exact", "marched"])
+def test_a_contact_that_sticks_holds_what_its_static_loading_has_left(evaluation):
+    # The loading goes one way to the gap and another one behind it: not straight from rest.
+    stiffness = np.array([[20.0, -6.0], [-6.0, 25.0]])
+    structure = ss.Structure(np.eye(2), stiffness, DAMPING, ["t", "n"])
+    pad = ss.Coulomb(["t", "n"], normal=[0, 1], **VALUES | {"tangential_stiffness": 15.0}, gap=1.0)
+    still = [ss.Force("t", 30.0, harmonic=0), ss.Force("n", 100.0, harmonic=0)]
+    model = ss.Model(structure, [pad], [ss.Force("t", 1.0), ss.Force("n", 2.0), *still])
+    exact = ss.exact_response(model, [3.0])
+    balance = ss.forced_response(model, [3.0], 5, evaluation=evaluation)
+    assert exact.slip_fraction(0)[0, 0] == exact.open_fraction(0)[0, 0] == 0.0
+    force = balance.contact_force(0, 0, 16)
+    np.testing.assert_allclose(force, exact.contact_force(0, 0, 16), atol=1e-9)
+    held = [balance.waveform(dof, 0, 16).mean() for dof in structure.dofs] @ stiffness
+    np.testing.assert_allclose(held + force.mean(axis=0), [30.0, 100.0], atol=1e-9)
