@@ -18,7 +18,8 @@ fn along<R>(
     march: Option<usize>,
     work: impl FnOnce(&dyn ContactLaw, Motion<'_>) -> R,
 ) -> PyResult<R> {
-    let model = evaluated(&problem.model, march).map_err(refused)?;
+    let known = problem.assuming(residual).map_err(refused)?;
+    let model = evaluated(known, march).map_err(refused)?;
     let view = displacement.as_array();
     let (points, orders) = (view.nrows(), view.ncols());
     if !view.iter().all(|amplitude| amplitude.is_finite()) {

@@ -7,7 +7,8 @@ use crate::watch::whole;
 use numpy::{Complex64, PyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
+use stickslip_core::balance::with_history;
 use stickslip_core::contact::{law as registered, ContactLaw, Parameters, Residual};
 use stickslip_core::model::{Contact, Model, SectorContact};
 use stickslip_core::structure::{
@@ -25,6 +26,7 @@ pub type Forces<'py> = Vec<(usize, Array1<'py, Complex64>)>;
 #[pyclass(frozen, module = "stickslip._core")]
 pub struct Problem {
     pub model: Arc<Model>,
+    loaded: OnceLock<Arc<Model>>,
 }
 
 impl Problem {
@@ -33,7 +35,24 @@ impl Problem {
         py: Python<'_>,
         model: impl FnOnce() -> Result<Model, Error> + Send + 'static,
     ) -> PyResult<Self> {
-        Ok(Self { model: Arc::new(whole(py, move |_| model())?) })
+        let model = Arc::new(whole(py, move |_| model())?);
+        Ok(Self { model, loaded: OnceLock::new() })
+    }
+
+    /// The model by which contacts that keep a residual answer to their motion: by
+    /// [`Residual::FromRest`] that with the history of its static loads.
+    ///
+    /// # Errors
+    /// As [`with_history`].
+    pub fn assuming(&self, residual: Residual) -> Result<&Arc<Model>, Error> {
+        if residual != Residual::FromRest {
+            return Ok(&self.model);
+        }
+        if let Some(known) = self.loaded.get() {
+            return Ok(known);
+        }
+        let made = with_history(&self.model)?.map(Arc::new);
+        Ok(self.loaded.get_or_init(|| made.unwrap_or_else(|| Arc::clone(&self.model))))
     }
 }
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip import plot
+from stickslip import _core, plot
 
 DAMPING = np.diag([0.346410162, 2.0])
 VALUES = {"friction": 0.85, "tangential_stiffness": 5.0, "normal_stiffness": 21.0}
@@ -138,3 +138,45 @@ def test_forces_of_a_preloaded_contact_that_sticks():
     assert force[:, 1].min() > 150.0
     np.testing.assert_allclose(balance.contact_force(0, 0, 64), force, atol=1e-9)
     assert not balance.contact_states(0, 0).direction.any()
+
+
+@pytest.mark.parametrize(
+    ("preload", "coupling", "slips"), [(157.0, -3e3, False), (20.0, 0.0, True), (157.0, 0.0, False)]
+)
+def test_multipliers_of_a_preloaded_contact_whose_motion_alone_is_symmetric(
+    preload, coupling, slips
+):
+    # Of displacements and normal force the latter alone has a mean: half a period is not the whole.
+    stiffness = np.array([[2e4, coupling], [coupling, 2.6e4]])
+    structure = ss.Structure(np.eye(2), stiffness, np.diag([5.0, 6.0]), ["x", "z"])
+    values = {"friction": 0.4, "tangential_stiffness": 28650.0, "normal_stiffness": 1274.0}
+    pad = ss.Coulomb(["x", "z"], normal=[0, 1], preload=preload, **values)
+    model = ss.Model(structure, [pad], [ss.Force("x", 52.0)])
+    exact, balance = ss.exact_response(model, [150.0]), ss.forced_response(model, [150.0], 61)
+    motion = np.array([balance.coefficients(dof)[0] for dof in structure.dofs])
+    assert np.abs(motion[:, ::2]).max() < 1e-15
+    motion[:, ::2] = 0.0
+    assert (exact.slip_fraction(0)[0, 0] > 0.0) == slips
+    assert balance.stable[0]
+    found, error = _core.period_multipliers(model.problem, np.zeros((2, 2)), 150.0, motion, 1e-9)
+    assert error <= 1e-9
+    expected = exact.multipliers[0, exact.neutral[0] :]
+    for power in range(1, expected.size + 1):
+        assert (found**power).sum() == pytest.approx((expected**power).sum(), abs=1e-5)
+
+
+@pytest.mark.parametrize("evaluation", ["exact", "marched"])
+def test_a_contact_that_sticks_holds_what_its_static_loading_has_left(evaluation):
+    # The loading goes one way to the gap and another one behind it: not straight from rest.
+    stiffness = np.array([[20.0, -6.0], [-6.0, 25.0]])
+    structure = ss.Structure(np.eye(2), stiffness, DAMPING, ["t", "n"])
+    pad = ss.Coulomb(["t", "n"], normal=[0, 1], **VALUES | {"tangential_stiffness": 15.0}, gap=1.0)
+    still = [ss.Force("t", 30.0, harmonic=0), ss.Force("n", 100.0, harmonic=0)]
+    model = ss.Model(structure, [pad], [ss.Force("t", 1.0), ss.Force("n", 2.0), *still])
+    exact = ss.exact_response(model, [3.0])
+    balance = ss.forced_response(model, [3.0], 5, evaluation=evaluation)
+    assert exact.slip_fraction(0)[0, 0] == exact.open_fraction(0)[0, 0] == 0.0
+    force = balance.contact_force(0, 0, 16)
+    np.testing.assert_allclose(force, exact.contact_force(0, 0, 16), atol=1e-9)
+    held = [balance.waveform(dof, 0, 16).mean() for dof in structure.dofs] @ stiffness
+    np.testing.assert_allclose(held + force.mean(axis=0), [30.0, 100.0], atol=1e-9)

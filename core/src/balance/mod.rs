@@ -60,8 +60,8 @@ pub use settings::{
 pub use single_harmonic::single_harmonic;
 pub(crate) use slider_start::{HeldMotion, SliderBalance};
 pub use solution::{AmplitudeBounds, CurveEnd, Point, PointStatus, Solution, Uniqueness};
-pub(crate) use statics::{slip_load, with_history, Level, Loading};
-pub use statics::{static_response, AtRest, RestStatus};
+pub(crate) use statics::{slip_load, Level, Loading};
+pub use statics::{static_response, with_history, AtRest, RestStatus};
 pub use sweep::sweep;
 pub(crate) use sweep::{check_bracket, check_frequency, over_frequencies};
 pub use unknowns::Unknowns;

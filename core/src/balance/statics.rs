@@ -112,7 +112,7 @@ pub fn static_response(
 ///
 /// # Errors
 /// As [`static_response`].
-pub(crate) fn with_history(model: &Model) -> Result<Option<Model>, Error> {
+pub fn with_history(model: &Model) -> Result<Option<Model>, Error> {
     let loaded = model.compliance().forced_harmonics().contains(&0);
     let keeps =
         |law: &dyn ContactLaw| law.with_history(&law.beginning().0, &law.beginning().1).is_some();

@@ -3,6 +3,7 @@
 
 pub mod coupled;
 pub mod damper;
+pub mod differences;
 pub mod passive;
 pub mod planar;
 
