@@ -347,9 +347,10 @@ impl<'a> ForcedBalance<'a> {
     }
 
     /// Homotopy, by Newton's method, after the chosen method has failed: first in the contact
-    /// stiffness, whose path is smooth even for nearly rigid contacts, then in the load.
+    /// stiffness, whose path is smooth even for nearly rigid contacts, then in a loss: beside a
+    /// resonance that friction hardly bounds, it leads to the phase that little friction can change.
     fn follow_paths(&self, equations: &mut Condensed<'_>, x: &mut Vec<f64>, report: &mut Report) {
-        for path in [Path::Stiffness, Path::Load] {
+        for path in [Path::Stiffness, Path::Loss] {
             let mut along = x.clone();
             equations.choose(path);
             let followed = homotopy(equations, &mut along, self.settings.newton);
