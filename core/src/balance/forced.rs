@@ -178,6 +178,40 @@ impl<'a> ForcedBalance<'a> {
         self.evaluations.with(samples)
     }
 
+    /// Solves at a frequency that nobody has asked for, or aside of it where an undamped mode resonates with
+    /// the load or with a harmonic of friction.
+    ///
+    /// # Errors
+    /// As for a solution at one frequency.
+    pub(crate) fn solve_beside(
+        &mut self,
+        omega: f64,
+        aside: f64,
+        start: Option<&Unknowns>,
+    ) -> Result<Point, Error> {
+        match self.solve(omega, start) {
+            Ok(point) if point.status != PointStatus::Singular => Ok(point),
+            Ok(_) | Err(Error::UndampedResonance { .. }) => self.solve(omega + aside, start),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Whether no contact slips at a frequency: the stuck response is the solution.
+    ///
+    /// # Errors
+    /// As for a solution at one frequency.
+    pub(crate) fn sticks(&mut self, omega: f64) -> Result<bool, Error> {
+        let Resolution { harmonics, samples } = self.control.first();
+        let (table, model) = (self.table(harmonics), self.evaluated(samples)?);
+        let mut equations = Condensed::new(model, &table, self.settings.residual, false);
+        if equations.set_omega(omega).is_err() {
+            return Ok(false);
+        }
+        let x = equations.stuck_response().to_vec();
+        equations.residual(&x, &mut vec![0.0; x.len()]);
+        Ok(equations.is_linear())
+    }
+
     pub(super) fn solve_with(
         &mut self,
         resolution: Resolution,
