@@ -174,6 +174,88 @@ def test_a_damper_curve_says_where_nothing_bounds():
     assert all(status == "converged" for status in below.status)
 
 
+NARROW = {  # masses, springs from ground to ground, contacts, loaded DOF, observed DOF
+    "two contacts": (
+        [0.84899, 0.91583, 0.51884, 2.8553, 0.58772, 2.7943],
+        [6232.4, 31875.0, 3628.0, 10771.0, 58679.0, 55130.0, 24951.0],
+        [(["q4"], 150660.0), (["q0"], 666110.0)],
+        ("q3", "q2"),
+    ),
+    "loaded contact": (
+        [2.9768, 1.1116, 1.5857, 1.2552, 1.936],
+        [24626.0, 59620.0, 21711.0, 23265.0, 5216.3, 24902.0],
+        [(["q4"], 361570.0)],
+        ("q4", "q2"),
+    ),
+    "between masses": (
+        [1.5811, 1.7411, 1.4917, 1.8297, 0.8554, 0.96058],
+        [29126.0, 61883.0, 15002.0, 4049.7, 31356.0, 24624.0, 0.0],
+        [(["q0", "q1"], 85375.0)],
+        ("q5", "q4"),
+    ),
+    "first mass": (
+        [1.7873, 1.2001, 0.92399, 0.85167, 1.9389],
+        [6009.4, 33074.0, 4083.9, 34585.0, 44658.0, 33282.0],
+        [(["q0"], 7335.8)],
+        ("q0", "q4"),
+    ),
+}
+"""Undamped chains, some modes of which hardly move the contacts."""
+
+
+def narrow_chain(name, slip_force):
+    masses, springs, contacts, (loaded, _) = NARROW[name]
+    springs = np.array(springs)
+    stiffness = np.diag(springs[:-1] + springs[1:])
+    stiffness -= np.diag(springs[1:-1], 1) + np.diag(springs[1:-1], -1)
+    dofs = [f"q{i}" for i in range(len(masses))]
+    structure = ss.Structure(np.diag(masses), stiffness, None, dofs)
+    jenkins = [
+        ss.Jenkins(*ends, stiffness=own, slip_force=slip_force, name=f"c{i}")
+        for i, (ends, own) in enumerate(contacts)
+    ]
+    return ss.Model(structure, jenkins, [ss.Force(loaded, 10.0)])
+
+
+def work_bound(model):
+    """Slip force from which friction bounds every mode: its work and the load's."""
+    structure, (load,) = model.structure, model.forces
+    root = np.sqrt(np.diag(structure.mass))
+    _, shapes = np.linalg.eigh(structure.stiffness / np.outer(root, root))
+    at = {dof: shapes[i] / root[i] for i, dof in enumerate(structure.dofs)}
+    ends = [np.array([at[dof] for dof in contact.dofs]) for contact in model.contacts]
+    seen = sum(np.abs(shape[0] - shape[1:].sum(axis=0)) for shape in ends)
+    return (np.pi * load.amplitude * np.abs(at[load.dof]) / (4.0 * seen)).max()
+
+
+@pytest.mark.parametrize("share", [1.02, 1.5, 100.0, 1e3])
+@pytest.mark.parametrize(
+    ("name", "harmonics"),
+    [("two contacts", 3), ("loaded contact", 3), ("between masses", 3), ("first mass", 1)],
+)
+def test_narrow_resonances_that_friction_bounds_are_found(name, harmonics, share):
+    model = narrow_chain(name, 1.0)
+    value = share * work_bound(model)
+    natural = ss.natural_frequencies(model, [(i, 0) for i in range(len(model.contacts))])
+    span, dof = (0.3 * natural[0], 1.2 * natural[-1]), NARROW[name][-1][1]
+    curve = ss.damper_curve(model, slip_force=[value], dof=dof, harmonics=harmonics, omega=span)
+    assert list(curve.status) == ["converged"]
+
+
+@pytest.mark.parametrize("harmonics", [1, 3])
+def test_where_the_phase_turns_at_once_the_response_is_solved(harmonics):
+    model = narrow_chain("two contacts", 13.4)
+    stuck = ss.natural_frequencies(model, [])[-1]
+    near = stuck * (1.0 + np.array([-1e-6, -2e-8, -1e-8, 1e-8, 2e-8, 1e-6]))
+    beside = ss.forced_response(model, near, harmonics)
+    assert beside.converged.all(), beside.status
+    slips = beside.slip_fraction("c1")[:, 0] > 0.0
+    assert list(slips) == [False, True, True, True, True, False]
+    # The load can do no more than move it just beyond its limit.
+    moved = beside.amplitude("q0")[slips] / (13.4 / 666110.0)
+    np.testing.assert_allclose(moved, 1.0, rtol=1e-5)
+
+
 @pytest.mark.slow
 def test_tables_show_what_nothing_bounds(tmp_path):
     from typer.testing import CliRunner

@@ -67,13 +67,7 @@ pub fn sweep_range(mut balance: ForcedBalance<'_>, from: f64, to: f64) -> Result
                 if step >= room { room } else { step.min(0.5 * room).max(SHORTEST * last.omega) };
             let omega = if step >= room { stop } else { last.omega + direction * length };
             let guess = tangent(&mut balance, last, omega);
-            let point = match balance.solve(omega, guess.as_ref()) {
-                // The user has not asked for this frequency: pass beside the resonance.
-                Err(Error::UndampedResonance { .. }) => {
-                    balance.solve(omega + direction * ASIDE * omega, guess.as_ref())?
-                }
-                solved => solved?,
-            };
+            let point = balance.solve_beside(omega, direction * ASIDE * omega, guess.as_ref())?;
             if point.status == PointStatus::NotComputed {
                 interrupted = true;
                 break;

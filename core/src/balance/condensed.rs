@@ -1,4 +1,4 @@
-//! The condensed equations at one frequency: `R(U) = U − μ U^stuck − G Q(U)`.
+//! The condensed equations at one frequency: `R(U) = U − U^stuck − G Q(U)`.
 
 use super::evaluation::Evaluated;
 use super::linear::{Factor, Linear};
@@ -15,8 +15,8 @@ use faer::c64;
 /// What a homotopy scales, from easy to the problem at hand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Path {
-    /// The external load: at small load everything sticks.
-    Load,
+    /// A loss that all contacts have besides: with much of it everything sticks.
+    Loss,
     /// The stiffness of the contacts: soft contacts make a smooth problem.
     Stiffness,
 }
@@ -39,7 +39,8 @@ pub struct Condensed<'a> {
     pub(super) values: Vec<SlipLoad>,
     pub(super) moved_on: bool,
     pub(super) path: Path,
-    pub(super) load_scale: f64,
+    /// Force of that loss over the force of a stuck contact.
+    pub(super) loss: f64,
     /// Softened laws and their share of the stiffness, while a homotopy in it is under way.
     pub(super) softened: Option<(f64, Vec<Box<dyn ContactLaw>>)>,
     pub(super) interrupted: Option<&'a dyn Fn() -> bool>,
@@ -73,8 +74,8 @@ impl<'a> Condensed<'a> {
             omega: f64::NAN,
             stuck: Vec::new(),
             moved_on: false,
-            path: Path::Load,
-            load_scale: 1.0,
+            path: Path::Stiffness,
+            loss: 0.0,
             softened: None,
             interrupted: None,
             factor: None,
@@ -299,6 +300,38 @@ impl<'a> Condensed<'a> {
                 *value += row.iter().zip(&x[range.clone()]).map(|(t, x)| t * x).sum::<f64>();
             }
         }
+    }
+
+    /// Adds to the slip load of a contact what the loss takes off the force, `q −= i η D u`.
+    pub(super) fn add_loss(
+        &self,
+        index: usize,
+        motion: Motion<'_>,
+        tangent: bool,
+        load: &mut SlipLoad,
+    ) {
+        let harmonics = self.table.harmonics();
+        let (slots, points) = (harmonics.slots(), &self.model.points()[index]);
+        let size = points.len() * slots;
+        let turned = harmonics.orders().filter(|&order| order > 0);
+        let pairs: Vec<usize> = turned.filter_map(|order| harmonics.slot(order)).collect();
+        for (i, row) in points.clone().enumerate() {
+            for (j, column) in points.clone().enumerate() {
+                let loss = self.loss * self.model.contact_stiffness()[(row, column)];
+                for &cosine in &pairs {
+                    for (to, from, share) in
+                        [(cosine, cosine + 1, -loss), (cosine + 1, cosine, loss)]
+                    {
+                        let (to, from) = (i * slots + to, j * slots + from);
+                        load.value[to] += share * motion.displacement[from];
+                        if tangent {
+                            load.tangent[to * size + from] += share;
+                        }
+                    }
+                }
+            }
+        }
+        load.active = true;
     }
 
     /// Adds to the slip load of a softened contact what its lost stiffness takes off the force,

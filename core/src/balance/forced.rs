@@ -178,6 +178,40 @@ impl<'a> ForcedBalance<'a> {
         self.evaluations.with(samples)
     }
 
+    /// Solves at a frequency that nobody has asked for, or aside of it where an undamped mode resonates with
+    /// the load or with a harmonic of friction.
+    ///
+    /// # Errors
+    /// As for a solution at one frequency.
+    pub(crate) fn solve_beside(
+        &mut self,
+        omega: f64,
+        aside: f64,
+        start: Option<&Unknowns>,
+    ) -> Result<Point, Error> {
+        match self.solve(omega, start) {
+            Ok(point) if point.status != PointStatus::Singular => Ok(point),
+            Ok(_) | Err(Error::UndampedResonance { .. }) => self.solve(omega + aside, start),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Whether no contact slips at a frequency: the stuck response is the solution.
+    ///
+    /// # Errors
+    /// As for a solution at one frequency.
+    pub(crate) fn sticks(&mut self, omega: f64) -> Result<bool, Error> {
+        let Resolution { harmonics, samples } = self.control.first();
+        let (table, model) = (self.table(harmonics), self.evaluated(samples)?);
+        let mut equations = Condensed::new(model, &table, self.settings.residual, false);
+        if equations.set_omega(omega).is_err() {
+            return Ok(false);
+        }
+        let x = equations.stuck_response().to_vec();
+        equations.residual(&x, &mut vec![0.0; x.len()]);
+        Ok(equations.is_linear())
+    }
+
     pub(super) fn solve_with(
         &mut self,
         resolution: Resolution,
@@ -355,9 +389,10 @@ impl<'a> ForcedBalance<'a> {
     }
 
     /// Homotopy, by Newton's method, after the chosen method has failed: first in the contact
-    /// stiffness, whose path is smooth even for nearly rigid contacts, then in the load.
+    /// stiffness, whose path is smooth even for nearly rigid contacts, then in a loss: beside a
+    /// resonance that friction hardly bounds, it leads to the phase that little friction can change.
     fn follow_paths(&self, equations: &mut Condensed<'_>, x: &mut Vec<f64>, report: &mut Report) {
-        for path in [Path::Stiffness, Path::Load] {
+        for path in [Path::Stiffness, Path::Loss] {
             let mut along = x.clone();
             equations.choose(path);
             let followed = homotopy(equations, &mut along, self.settings.newton);

@@ -20,6 +20,9 @@ use faer::Mat;
 /// Share of the largest contact force below which a contact counts as carrying nothing.
 const CARRIES_NOTHING: f64 = 1e-3;
 
+/// Loss, relative to the stiffness of contacts, whose end hardly moves a solution any more.
+const LEAST_LOSS: f64 = 1e-12;
+
 impl Condensed<'_> {
     /// Residual, with the tangents of the laws or without.
     fn evaluate(&mut self, x: &[f64], tangent: bool, out: &mut [f64]) {
@@ -34,6 +37,9 @@ impl Condensed<'_> {
                         laws[index].slip_load(motion, tangent, load);
                         self.add_lost_stiffness(index, 1.0 - share, motion, tangent, load);
                     }
+                }
+                if self.loss > 0.0 {
+                    self.add_loss(index, motion, tangent, load);
                 }
             }
         });
@@ -52,7 +58,7 @@ impl Condensed<'_> {
         out.fill(0.0);
         self.add_response(&self.slip_load(), out);
         for ((r, x), stuck) in out.iter_mut().zip(x).zip(&self.stuck) {
-            *r = x - self.load_scale * stuck - *r;
+            *r = x - stuck - *r;
         }
     }
 
@@ -295,7 +301,7 @@ impl System for Condensed<'_> {
 impl Parametrised for Condensed<'_> {
     fn set_scale(&mut self, scale: f64) {
         match self.path {
-            Path::Load => self.load_scale = scale,
+            Path::Loss => self.loss = LEAST_LOSS * (scale.powi(-4) - 1.0),
             Path::Stiffness => {
                 let soften = || {
                     self.model.laws().iter().map(|law| law.with_scaled_stiffness(scale)).collect()
@@ -306,15 +312,8 @@ impl Parametrised for Condensed<'_> {
     }
 
     fn easy_start(&self, x: &mut [f64]) {
-        if self.path == Path::Load {
-            x.iter_mut().zip(&self.stuck).for_each(|(x, stuck)| *x = self.load_scale * stuck);
-        }
-    }
-
-    fn predict(&self, growth: f64, x: &mut [f64]) {
-        // Beyond the onset of slip a solution grows roughly with its load.
-        if self.path == Path::Load {
-            x.iter_mut().for_each(|x| *x *= growth);
+        if self.path == Path::Loss {
+            x.fill(0.0);
         }
     }
 }

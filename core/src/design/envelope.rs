@@ -18,7 +18,7 @@ const BROAD: f64 = 1e-4;
 /// Splits in a row that may leave more than half of an interval.
 const IDLE: u32 = 1;
 /// Shortest interval that is split, relative to the frequency.
-const SHORTEST: f64 = 1e-9;
+const SHORTEST: f64 = 1e-12;
 /// Share of a height that solutions leave open.
 const LEFT_OPEN: f64 = 1e-10;
 

@@ -13,6 +13,8 @@ pub(super) struct Sample {
     pub(super) unknowns: Unknowns,
     /// Derivative of the unknowns in frequency.
     pub(super) rate: Vec<f64>,
+    /// Whether no point slips.
+    pub(super) sticks: bool,
 }
 
 impl Sample {

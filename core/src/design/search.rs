@@ -31,6 +31,10 @@ const SHARE: f64 = 2.0;
 const OVERLAID: f64 = 10.0;
 /// Gain in height, relative, that the shortest interval must not promise.
 const UNRESOLVED: f64 = 1e-3;
+/// Share of an interval within which the frequency is known at which slip begins, …
+const ONSET: f64 = 4e-3;
+/// … unless it is as short as this, relative to the frequency.
+const SHORT: f64 = 1e-7;
 /// Steps that bring a top to where its slope vanishes.
 const STEPS: usize = 3;
 
@@ -125,6 +129,9 @@ impl<'a, 'b> Search<'a, 'b> {
             }
             let next = self.envelope.most_promising(self.aim.precision.gain);
             let Some((interval, share)) = next.filter(|_| splits < self.aim.most_points) else {
+                if self.look_at_onsets()? {
+                    continue;
+                }
                 break;
             };
             match self.inside(interval, share)? {
@@ -166,6 +173,31 @@ impl<'a, 'b> Search<'a, 'b> {
         let solved = sample.is_some();
         sample.into_iter().for_each(|sample| self.envelope.insert(sample));
         Ok(solved)
+    }
+
+    /// Looks at the frequencies at which slip begins: what friction has held down may have a peak there that
+    /// no slope on either side tells of. Whether there are any that no point has seen.
+    fn look_at_onsets(&mut self) -> Result<bool, Error> {
+        let mixed = |ends: &&[Sample]| ends[0].sticks != ends[1].sticks;
+        let intervals = self.envelope.samples.windows(2).filter(mixed);
+        let intervals: Vec<[f64; 2]> = intervals
+            .map(|ends| if ends[0].sticks { [0, 1] } else { [1, 0] }.map(|i| ends[i].at))
+            .collect();
+        let mut found = false;
+        for [mut stuck, mut slipping] in intervals {
+            let mut part = slipping - stuck;
+            if part.abs() <= SHORT * stuck || !self.balance.sticks(stuck + ONSET * part)? {
+                continue;
+            }
+            let enough = 0.25 * ONSET * part.abs();
+            while part.abs() > enough {
+                let middle = 0.5 * (stuck + slipping);
+                *(if self.balance.sticks(middle)? { &mut stuck } else { &mut slipping }) = middle;
+                part = slipping - stuck;
+            }
+            found |= self.look(stuck, &[])?;
+        }
+        Ok(found)
     }
 
     /// Looks at a resonance, or beside it if it cannot be solved there; and on both sides if others
@@ -290,12 +322,7 @@ impl<'a, 'b> Search<'a, 'b> {
 
     /// Solves at one frequency from one start.
     fn attempt(&mut self, omega: f64, start: Option<&Unknowns>) -> Result<Option<Sample>, Error> {
-        let point = match self.balance.solve(omega, start) {
-            Err(Error::UndampedResonance { .. }) => {
-                self.balance.solve(omega * (1.0 + ASIDE), start)?
-            }
-            solved => solved?,
-        };
+        let point = self.balance.solve_beside(omega, ASIDE * omega, start)?;
         self.sampled(&point)
     }
 
@@ -319,7 +346,8 @@ impl<'a, 'b> Search<'a, 'b> {
         };
         let at = point.omega;
         let knots = jets.iter().map(|&(height, slope)| Knot { at, height, slope }).collect();
-        Ok(Some(Sample { at, knots, unknowns: unknowns.clone(), rate }))
+        let sticks = point.contacts.iter().all(|one| one.slip_fraction == 0.0);
+        Ok(Some(Sample { at, knots, unknowns: unknowns.clone(), rate, sticks }))
     }
 
     /// A start from a similar response: its solution, moved by as much as the nearest sample

@@ -6,7 +6,7 @@
 
 use super::flexibility::RIGID_BODY;
 use super::massless::StuckModes;
-use super::modes::{RealModes, RESONANCE};
+use super::modes::{resonates, RealModes};
 use super::ports::{HarmonicLoad, Ports};
 use crate::solve::{gmres, KrylovSettings};
 use crate::Error;
@@ -16,6 +16,8 @@ use faer::{c64, Accum, Mat, MatRef, Par};
 
 /// Products with the coupling of the damping: far more than it takes.
 const MOST_PRODUCTS: usize = 400;
+/// Least modulus of a dynamic stiffness, relative to the squared frequency.
+const FLOOR: f64 = 1e-9;
 
 /// Modes of the stuck structure at its contacts. Series of several harmonics are matrices, slots ×
 /// contacts or slots × modes, with the cosines and sines of a harmonic in neighbouring rows.
@@ -156,7 +158,7 @@ impl ContactModes {
             let inverse = (0..self.modes()).map(|j| {
                 let own = self.stiffness(j, rate);
                 // Met exactly by a mode that damping only couples: the iteration sees to the rest.
-                let least = RESONANCE * rate * rate;
+                let least = FLOOR * rate * rate;
                 if own.norm() < least { c64::new(0.0, least) } else { own }.inv()
             });
             orders.push((slot, rate, inverse.collect()));
@@ -179,12 +181,12 @@ impl ContactModes {
         for (j, (natural, damping)) in self.omega_squared.iter().zip(&self.damping).enumerate() {
             let distance = (natural - rate * rate).abs() + rate * damping.abs();
             let coupled = self.coupling.as_ref().is_some_and(|c| c.col(j).norm_max() > 0.0);
-            if distance > RESONANCE * rate * rate || coupled || self.inertia[j] == 0.0 {
+            if coupled || self.inertia[j] == 0.0 {
                 continue;
             }
-            let seen = self.contacts.row(j).norm_max() > 0.0
-                || self.load(order).is_some_and(|load| load[j].norm() > 0.0);
-            if seen {
+            let moved = self.contacts.row(j).norm_max() > 0.0;
+            let loaded = || self.load(order).is_some_and(|load| load[j].norm() > 0.0);
+            if resonates(distance, rate * rate, moved) && (moved || loaded()) {
                 let natural = natural.max(0.0).sqrt();
                 return Err(Error::UndampedResonance { omega, harmonic: order, natural });
             }

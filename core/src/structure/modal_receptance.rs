@@ -2,7 +2,7 @@
 
 use super::contact_modes::ContactModes;
 use super::modal::{ModalBase, ModalCompliance};
-use super::modes::RESONANCE;
+use super::modes::resonates;
 use super::restraint::restrain;
 use super::spectrum::Spectrum;
 use super::{Compliance, Outline, Quantity, Receptance, Request};
@@ -39,13 +39,10 @@ impl ModalCompliance {
         let squared = (harmonic as f64 * omega).powi(2);
         for (j, (&natural, &c)) in omega_squared.iter().zip(damping).enumerate() {
             let distance = (natural - squared).abs() + harmonic as f64 * omega * c.abs();
-            if distance > RESONANCE * squared {
-                continue;
-            }
-            let seen = (0..self.contact_left.nrows())
-                .any(|i| self.contact_left[(i, j)].norm() > 0.0)
-                || self.load(harmonic).is_some_and(|load| load[j].norm() > 0.0);
-            if seen {
+            let moved =
+                (0..self.contact_left.nrows()).any(|i| self.contact_left[(i, j)].norm() > 0.0);
+            let loaded = || self.load(harmonic).is_some_and(|load| load[j].norm() > 0.0);
+            if resonates(distance, squared, moved) && (moved || loaded()) {
                 return Err(Error::UndampedResonance {
                     omega,
                     harmonic,

@@ -23,8 +23,16 @@ pub type RealModes = Modes<f64>;
 /// Modes of complex matrices, as of a travelling wave.
 pub type HermitianModes = Modes<c64>;
 
-/// Distance to an undamped resonance, relative to the squared frequency, that is refused.
-pub(super) const RESONANCE: f64 = 1e-9;
+/// Distance to an undamped resonance, relative to the squared frequency, that is refused, …
+const RESONANCE: f64 = 1e-9;
+/// … and to one that moves contacts: friction may bound it, and only rounding hides the frequency.
+const OF_CONTACTS: f64 = 1e-12;
+
+/// Whether a squared frequency is too close to an undamped mode, which may move contacts.
+pub(super) fn resonates(distance: f64, squared: f64, moves_contacts: bool) -> bool {
+    distance <= if moves_contacts { OF_CONTACTS } else { RESONANCE } * squared
+}
+
 /// Ratio of the DOFs' squared frequencies from which their order decides how many digits the low
 /// modes keep: below, rounding of the fastest DOF is no more than 1e-10 of them.
 const GRADED: f64 = 1e6;
