@@ -256,23 +256,63 @@ def test_a_free_motion_dies_away():
     assert fate.motion == "decaying"
 
 
-def test_exact_cycles_and_waves_refuse_it_by_name():
+@pytest.mark.parametrize(("sectors", "order", "harmonic"), [(6, 1, 1), (5, 2, 1), (5, 2, 2)])
+def test_exact_waves_of_a_tuned_disk_are_those_of_the_balance(sectors, order, harmonic):
     disk = ss.BladedDisk(
-        structure(),
-        sectors=6,
+        structure(damping=0.01),
+        sectors=sectors,
         couplings=[ss.Coupling("b", stiffness=500.0)],
-        contacts=[iwan()],
-        forces=[ss.Force("b", 2.0)],
-        engine_order=2,
+        contacts=[iwan(beta=0.3), exponential("b", slip_force=1.0)],
+        forces=[ss.Force("b", 3.0), ss.Force("b", 1.0, harmonic=harmonic)],
+        engine_order=order,
     )
-    with pytest.raises(ss.ModelError, match="the law iwan has no sliders"):
-        ss.exact_response(disk, [100.0])
-    own = ss.Model(structure(), [iwan()], [])
-    with pytest.raises(ss.ModelError, match="the law iwan has no sliders"):
-        ss.limit_cycles(own, negative_damping=-2.0 * np.eye(2), mode=0, method="exact")
-    own = model(iwan(), more=[ss.Force("a", 1.0, harmonic=2)])
-    with pytest.raises(ss.ModelError, match="residual"):
-        ss.exact_response(own, [100.0], residual=0.3)
+    exact, balance = ss.exact_response(disk, [105.0]), ss.forced_response(disk, [105.0], 41)
+    assert exact.converged.all()
+    found, expected = (own.coefficients("b")[:, :6] for own in (exact, balance))
+    assert np.abs(found - expected).max() < 1e-7 * np.abs(expected).max()
+
+
+def cycles(method, contacts, **options):
+    own = ss.Model(structure(), contacts, [])
+    negative = -np.diag([2.0, 1.0])
+    return ss.limit_cycles(own, negative_damping=negative, mode=0, method=method, **options)
+
+
+def test_exact_limit_cycles_are_those_of_the_balance():
+    joints = [iwan("a", slip_force=1.0), exponential("a", "b", slip_force=0.5)]
+    exact = cycles("exact", joints, ratio=[1.0])
+    balance = cycles("newton", joints, ratio=[1.0], harmonics=63)
+    np.testing.assert_allclose(balance.omega, exact.omega, rtol=1e-7)
+    np.testing.assert_allclose(balance.amplitude("b"), exact.amplitude("b"), rtol=1e-6)
+    np.testing.assert_array_equal(exact.stable, [True, False])
+    np.testing.assert_allclose(
+        np.abs(balance.multipliers[:, 0]), np.abs(exact.multipliers[:, 0]), rtol=1e-5
+    )
+
+
+def test_cycles_that_grow_fast_are_closed_over_several_segments():
+    # Mode 1 grows by 1e10 in half a period: one stretch of the flow cannot be steered.
+    stiffness, damping = [[1.2e4, -10.0], [-10.0, 4e4]], 0.2 * np.eye(2)
+    own = ss.Model(ss.Structure(np.eye(2), stiffness, damping, ["a", "b"]), [iwan()], [])
+    options = {"negative_damping": -np.diag([2.0, 600.0]), "mode": 0, "ratio": [1.6]}
+    exact = ss.limit_cycles(own, method="exact", **options)
+    balance = ss.limit_cycles(own, harmonics=63, stability=False, **options)
+    np.testing.assert_allclose(balance.omega, exact.omega, rtol=1e-7)
+    np.testing.assert_allclose(balance.amplitude("a"), exact.amplitude("a"), rtol=1e-6)
+    assert (np.abs(exact.multipliers[:, 0]) > 1e20).all()
+
+
+@pytest.mark.parametrize("residual", [0.3, -1.0, 50.0])
+@pytest.mark.parametrize("law", [iwan(chi=-0.3), exponential()])
+def test_exact_orbits_hold_what_they_are_given(law, residual):
+    rod = ss.Jenkins("b", stiffness=2e3, slip_force=200.0)
+    own = model(law, rod, more=[ss.Force("a", 2.0, harmonic=0)], damping=0.01)
+    balance = ss.forced_response(own, [104.0], 41, residual=residual)
+    exact = ss.exact_response(own, [104.0], residual=residual)
+    found, expected = (each.coefficients("a")[:, :5] for each in (exact, balance))
+    assert np.abs(found - expected).max() < 1e-7 * np.abs(expected).max()
+    held = exact.contact_force(0, 0)
+    assert held.max() <= law.slip_force
 
 
 def test_results_go_to_files_and_back(tmp_path):

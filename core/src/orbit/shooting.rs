@@ -149,7 +149,8 @@ impl<'a> Shooting<'a> {
         }
         self.memory.join()?;
         let all = System::size(self);
-        for (number, (one, start)) in segments.iter_mut().zip(starts.chunks_exact(all)).enumerate() {
+        for (number, (one, start)) in segments.iter_mut().zip(starts.chunks_exact(all)).enumerate()
+        {
             let side = if self.symmetric && number + 1 == count { -1.0 } else { 1.0 };
             let numbers = self.memory.behind(number, start);
             one.image[size..].iter_mut().zip(numbers).for_each(|(to, own)| *to = side * own);
