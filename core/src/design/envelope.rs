@@ -17,8 +17,10 @@ const CHANCE: f64 = 1e-2;
 const BROAD: f64 = 1e-4;
 /// Splits in a row that may leave more than half of an interval.
 const IDLE: u32 = 1;
-/// Shortest interval that is split, relative to the frequency.
-const SHORTEST: f64 = 1e-12;
+/// Shortest interval that is split, as a share of the narrowest bandwidth, …
+const OF_BANDWIDTH: f64 = 1e-3;
+/// … and relative to the frequency: what friction alone bounds may be as narrow as rounding leaves it.
+const SHORTEST: [f64; 2] = [1e-12, 1e-9];
 /// Share of a height that solutions leave open.
 const LEFT_OPEN: f64 = 1e-10;
 
@@ -42,17 +44,25 @@ pub(super) struct Envelope {
     groups: Vec<Range<usize>>,
     pub(super) samples: Vec<Sample>,
     gaps: Vec<Gap>,
+    /// Shortest interval that is split, relative to the frequency.
+    shortest: f64,
 }
 
 impl Envelope {
-    /// Of groups of so many curves, without samples.
-    pub(super) fn new(sizes: impl Iterator<Item = usize>) -> Self {
+    /// Of groups of so many curves, without samples; the narrowest bandwidth is relative to the frequency.
+    pub(super) fn new(sizes: impl Iterator<Item = usize>, narrowest: f64) -> Self {
+        let [least, most] = SHORTEST;
         let mut last = 0;
         let groups = sizes.map(|size| {
             last += size;
             last - size..last
         });
-        Self { groups: groups.collect(), samples: Vec::new(), gaps: Vec::new() }
+        Self {
+            groups: groups.collect(),
+            samples: Vec::new(),
+            gaps: Vec::new(),
+            shortest: (OF_BANDWIDTH * narrowest).clamp(least, most),
+        }
     }
 
     /// The samples on either side of a frequency.
@@ -63,9 +73,12 @@ impl Envelope {
 
     /// The highest of a group at the samples on either side.
     pub(super) fn beside(&self, at: f64, group: usize) -> f64 {
-        let curves = &self.groups[group];
-        let heights = self.around(at).flat_map(|sample| &sample.knots[curves.clone()]);
-        heights.map(|knot| knot.height).fold(0.0, f64::max)
+        self.around(at).map(|sample| self.height_of(sample, group)).fold(0.0, f64::max)
+    }
+
+    /// The highest of a group at a sample.
+    pub(super) fn height_of(&self, sample: &Sample, group: usize) -> f64 {
+        sample.knots[self.groups[group].clone()].iter().map(|knot| knot.height).fold(0.0, f64::max)
     }
 
     /// Sample and curve of the highest point of a group, the flattest of those that are equal.
@@ -81,8 +94,7 @@ impl Envelope {
 
     /// Height of the highest point of a group.
     pub(super) fn height(&self, group: usize) -> f64 {
-        let knots = self.samples.iter().flat_map(|one| &one.knots[self.groups[group].clone()]);
-        knots.map(|knot| knot.height).fold(0.0, f64::max)
+        self.samples.iter().map(|sample| self.height_of(sample, group)).fold(0.0, f64::max)
     }
 
     /// The intervals with their ends.
@@ -98,7 +110,7 @@ impl Envelope {
             let reference = self.height(group);
             for (i, (gap, ends)) in self.intervals().enumerate() {
                 let (share, promise) = gap.promises[group];
-                if !gap.closed && !is_shortest(ends) && promise > best.1 * reference {
+                if !gap.closed && !self.is_shortest(ends) && promise > best.1 * reference {
                     best = (Some((i, share)), promise / reference);
                 }
             }
@@ -116,7 +128,7 @@ impl Envelope {
         };
         let [left, right] = [interval, interval + 1].map(|i| self.samples[i].at);
         // What is too short to be split would keep an error that nothing has measured.
-        let least = (2.0 * SHORTEST * right / (right - left)).min(0.5);
+        let least = (2.0 * self.shortest * right / (right - left)).min(0.5);
         share.clamp(least, 1.0 - least)
     }
 
@@ -138,8 +150,8 @@ impl Envelope {
 
     /// Adds a sample; nothing is known of the intervals beside it.
     pub(super) fn insert(&mut self, sample: Sample) {
-        if self.around(sample.at).any(|other| (other.at - sample.at).abs() <= SHORTEST * sample.at)
-        {
+        let near = self.shortest * sample.at;
+        if self.around(sample.at).any(|other| (other.at - sample.at).abs() <= near) {
             return;
         }
         let errors = vec![UNSEEN; sample.knots.len()];
@@ -188,7 +200,7 @@ impl Envelope {
         let ends = &self.samples[interval..interval + 2];
         let (left, right) = (&ends[0].knots, &ends[1].knots);
         // Of what is too short to be split the interpolant says all that can be known.
-        let errors = if is_shortest(ends) { vec![0.0; errors.len()] } else { errors };
+        let errors = if self.is_shortest(ends) { vec![0.0; errors.len()] } else { errors };
         let promise = |group: usize| {
             let reference = self.height(group);
             let promises = self.groups[group].clone().filter(|_| reference > 0.0).flat_map(|i| {
@@ -216,9 +228,9 @@ impl Envelope {
         let place = if rises { (top, share) } else { (other, 1.0 - share) };
         (won > gain * knot.height).then_some(place)
     }
-}
 
-/// Whether an interval is too short to be split.
-pub(super) fn is_shortest(ends: &[Sample]) -> bool {
-    ends[1].at - ends[0].at <= SHORTEST * ends[1].at
+    /// Whether an interval is too short to be split.
+    pub(super) fn is_shortest(&self, ends: &[Sample]) -> bool {
+        ends[1].at - ends[0].at <= self.shortest * ends[1].at
+    }
 }

@@ -128,6 +128,12 @@ impl FirstLook {
             .collect();
         Ok(Self { omega, candidates, unbounded })
     }
+
+    /// The narrowest bandwidth of a resonance, relative to its frequency.
+    pub(super) fn narrowest(&self) -> f64 {
+        let bandwidths = self.candidates.iter().map(|one| one.bandwidth / one.at);
+        bandwidths.fold(f64::INFINITY, f64::min)
+    }
 }
 
 /// Whether the even look alone sees all resonances whose height is not known: their frequencies, which

@@ -296,7 +296,7 @@ impl<'a> PeakSearch<'a> {
         let aim = self.aim();
         let table = balance.table(resolution.harmonics);
         let look = FirstLook::new(model, &aim, table.harmonics().orders(), seeds)?;
-        let search = Search::new(settings.residual, &aim, &mut balance);
+        let search = Search::new(settings.residual, &aim, look.narrowest(), &mut balance);
         let found = search.run(&look, seeds)?;
         self.points += found.as_ref().map_or(0, |found| found.samples.len());
         self.memory = balance.into_memory();

@@ -7,7 +7,7 @@
 //! been found. Jumps between rival maxima, and between the blades of a disk, are seen, because none
 //! is followed by itself.
 
-use super::envelope::{is_shortest, Envelope, Gap};
+use super::envelope::{Envelope, Gap};
 use super::first_look::{Aim, Candidate, FirstLook, SEEN};
 use super::interpolant::Knot;
 use super::samples::{predicted, Sample};
@@ -35,6 +35,8 @@ const UNRESOLVED: f64 = 1e-3;
 const ONSET: f64 = 4e-3;
 /// … unless it is as short as this, relative to the frequency.
 const SHORT: f64 = 1e-7;
+/// Share of the highest point from which such a point is a rival.
+const ONSET_RIVAL: f64 = 0.5;
 /// Steps that bring a top to where its slope vanishes.
 const STEPS: usize = 3;
 
@@ -92,10 +94,11 @@ impl<'a, 'b> Search<'a, 'b> {
     pub(super) fn new(
         residual: Residual,
         aim: &'b Aim,
+        narrowest: f64,
         balance: &'b mut ForcedBalance<'a>,
     ) -> Self {
         let dofs = aim.groups.concat();
-        let envelope = Envelope::new(aim.groups.iter().map(Vec::len));
+        let envelope = Envelope::new(aim.groups.iter().map(Vec::len), narrowest);
         Self { residual, aim, dofs, balance, envelope, failures: 0, failure: None }
     }
 
@@ -195,7 +198,14 @@ impl<'a, 'b> Search<'a, 'b> {
                 *(if self.balance.sticks(middle)? { &mut stuck } else { &mut slipping }) = middle;
                 part = slipping - stuck;
             }
-            found |= self.look(stuck, &[])?;
+            let Some(sample) = self.solve(stuck, None)? else { continue };
+            let rivals = (0..self.aim.groups.len()).any(|group| {
+                self.envelope.height_of(&sample, group) > ONSET_RIVAL * self.envelope.height(group)
+            });
+            if rivals {
+                self.envelope.insert(sample);
+                found = true;
+            }
         }
         Ok(found)
     }
@@ -258,10 +268,12 @@ impl<'a, 'b> Search<'a, 'b> {
         if ends || beyond(DOUBT).any(|(gap, _)| gap.closed) {
             return Some(Doubt::unsolved(self.failure.unwrap_or(PointStatus::Stalled)));
         }
-        if let Some((_, ends)) = beyond(UNRESOLVED).find(|(_, ends)| is_shortest(ends)) {
+        if let Some((_, ends)) =
+            beyond(UNRESOLVED).find(|(_, ends)| self.envelope.is_shortest(ends))
+        {
             return Some(Doubt::unbounded(ends[0].at));
         }
-        let open = beyond(DOUBT).any(|(_, ends)| !is_shortest(ends));
+        let open = beyond(DOUBT).any(|(_, ends)| !self.envelope.is_shortest(ends));
         open.then(|| Doubt::unsolved(PointStatus::Stalled))
     }
 

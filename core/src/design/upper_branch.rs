@@ -85,7 +85,7 @@ pub(super) fn upper_branch(
     let balance = ForcedBalance::new(model, settings, &dofs)?.watched(progress);
     let curve = sweep_range(balance, aim.span.0, aim.span.1)?;
     let mut balance = ForcedBalance::new(model, settings, &[])?.watched(progress);
-    let mut search = Search::new(settings.residual, aim, &mut balance);
+    let mut search = Search::new(settings.residual, aim, f64::INFINITY, &mut balance);
     let mut samples = Vec::with_capacity(curve.points.len());
     let known = curve.points.iter().filter(|point| !curve.interrupted && point.is_solved());
     for point in known {
