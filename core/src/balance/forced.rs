@@ -224,7 +224,7 @@ impl<'a> ForcedBalance<'a> {
             return Ok(solved);
         }
         if start.is_none() {
-            if let Some(point) = self.from_fewer(resolution, omega)? {
+            if let Some(point) = self.solve_by_fewer(resolution, omega)? {
                 return Ok(point);
             }
         }

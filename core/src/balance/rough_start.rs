@@ -67,7 +67,7 @@ impl ForcedBalance<'_> {
 impl ForcedBalance<'_> {
     /// A point that Newton's method does not reach from the stuck response: from half as many harmonics,
     /// or half of those, whichever are solved from there, and back up.
-    pub(super) fn from_fewer(
+    pub(super) fn solve_by_fewer(
         &mut self,
         fine: Resolution,
         omega: f64,
@@ -78,7 +78,7 @@ impl ForcedBalance<'_> {
         for highest in halves.skip(1).take_while(|&highest| highest >= least) {
             levels.push(highest);
             let coarse = Resolution { harmonics: highest, ..fine };
-            let Some(mut start) = self.from_stuck(coarse, omega)? else { continue };
+            let Some(mut start) = self.reached_from_stuck(coarse, omega)? else { continue };
             for &harmonics in levels.iter().rev().skip(1) {
                 let point = self.attempt(Resolution { harmonics, ..fine }, omega, Some(&start))?;
                 match point.unknowns.clone().filter(|_| point.is_solved()) {
@@ -92,7 +92,11 @@ impl ForcedBalance<'_> {
     }
 
     /// What Newton's method alone finds from the stuck response, if anything.
-    fn from_stuck(&mut self, at: Resolution, omega: f64) -> Result<Option<Unknowns>, Error> {
+    fn reached_from_stuck(
+        &mut self,
+        at: Resolution,
+        omega: f64,
+    ) -> Result<Option<Unknowns>, Error> {
         let table = self.table(at.harmonics);
         let model = self.evaluated(at.samples)?;
         let interrupted = self.interruption();
