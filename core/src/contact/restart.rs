@@ -52,3 +52,30 @@ impl Restart {
         }
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use crate::contact::samples::Samples;
+    use crate::contact::{Aft, Closure, Coulomb, Motion, Residual};
+    use crate::fourier::{Harmonics, SampleTable};
+
+    /// A motion to and fro pushes the slider sideways at either end, by less and less: in the end it
+    /// is as far from both as its spring reaches.
+    #[test]
+    fn pushes_in_turn_come_to_rest_in_a_few_rounds() {
+        let half = 0.995_f64;
+        let table = SampleTable::new(Harmonics::new(1, false));
+        let displacement = [0.0, half, 0.0, -0.5, 0.0, 0.0];
+        let residual = Residual::FromRest;
+        let motion = Motion { table: &table, displacement: &displacement, residual };
+        let law = Coulomb::new(2, 1.0, 1.0, None, Closure::Preload(1.0)).unwrap();
+        let aft = Aft::new(Box::new(law), 128).unwrap();
+        let samples = Samples::of(motion, 128);
+        let round = aft.march(&samples, &aft.begin(motion), false);
+        // Marched from period to period it takes some 700.
+        assert!(round.restarts.len() < 20, "{}", round.restarts.len());
+        let sideways = round.state[1];
+        assert!((sideways + (1.0 - half * half).sqrt()).abs() < 1e-10, "{sideways}");
+    }
+}
