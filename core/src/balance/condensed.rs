@@ -1,4 +1,4 @@
-//! The condensed equations at one frequency: `R(U) = U − U^stuck − G Q(U)`.
+//! The condensed equations at one frequency: `R(U) = U − μ U^stuck − G Q(U)`.
 
 use super::evaluation::Evaluated;
 use super::linear::{Factor, Linear};
@@ -15,6 +15,8 @@ use faer::c64;
 /// What a homotopy scales, from easy to the problem at hand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Path {
+    /// The external load: at small load everything sticks.
+    Load,
     /// A loss that all contacts have besides: with much of it everything sticks.
     Loss,
     /// The stiffness of the contacts: soft contacts make a smooth problem.
@@ -39,7 +41,8 @@ pub struct Condensed<'a> {
     pub(super) values: Vec<SlipLoad>,
     pub(super) moved_on: bool,
     pub(super) path: Path,
-    /// Force of that loss over the force of a stuck contact.
+    pub(super) load_scale: f64,
+    /// Force of the loss over the force of a stuck contact.
     pub(super) loss: f64,
     /// Softened laws and their share of the stiffness, while a homotopy in it is under way.
     pub(super) softened: Option<(f64, Vec<Box<dyn ContactLaw>>)>,
@@ -75,6 +78,7 @@ impl<'a> Condensed<'a> {
             stuck: Vec::new(),
             moved_on: false,
             path: Path::Stiffness,
+            load_scale: 1.0,
             loss: 0.0,
             softened: None,
             interrupted: None,

@@ -389,10 +389,12 @@ impl<'a> ForcedBalance<'a> {
     }
 
     /// Homotopy, by Newton's method, after the chosen method has failed: first in the contact
-    /// stiffness, whose path is smooth even for nearly rigid contacts, then in a loss: beside a
-    /// resonance that friction hardly bounds, it leads to the phase that little friction can change.
+    /// stiffness, whose path is smooth even for nearly rigid contacts, then, where friction alone acts, in
+    /// a loss: beside a resonance that friction hardly bounds it leads to the phase that friction cannot
+    /// change. Springs without stiffness at rest have no such loss; their path is that of the load.
     fn follow_paths(&self, equations: &mut Condensed<'_>, x: &mut Vec<f64>, report: &mut Report) {
-        for path in [Path::Stiffness, Path::Loss] {
+        let last = if self.is_monotone() { Path::Loss } else { Path::Load };
+        for path in [Path::Stiffness, last] {
             let mut along = x.clone();
             equations.choose(path);
             let followed = homotopy(equations, &mut along, self.settings.newton);

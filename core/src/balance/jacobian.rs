@@ -58,7 +58,7 @@ impl Condensed<'_> {
         out.fill(0.0);
         self.add_response(&self.slip_load(), out);
         for ((r, x), stuck) in out.iter_mut().zip(x).zip(&self.stuck) {
-            *r = x - stuck - *r;
+            *r = x - self.load_scale * stuck - *r;
         }
     }
 
@@ -301,6 +301,7 @@ impl System for Condensed<'_> {
 impl Parametrised for Condensed<'_> {
     fn set_scale(&mut self, scale: f64) {
         match self.path {
+            Path::Load => self.load_scale = scale,
             Path::Loss => self.loss = LEAST_LOSS * (scale.powi(-4) - 1.0),
             Path::Stiffness => {
                 let soften = || {
@@ -312,8 +313,19 @@ impl Parametrised for Condensed<'_> {
     }
 
     fn easy_start(&self, x: &mut [f64]) {
-        if self.path == Path::Loss {
-            x.fill(0.0);
+        match self.path {
+            Path::Stiffness => {}
+            Path::Load => {
+                x.iter_mut().zip(&self.stuck).for_each(|(x, stuck)| *x = self.load_scale * stuck);
+            }
+            Path::Loss => x.fill(0.0),
+        }
+    }
+
+    fn predict(&self, growth: f64, x: &mut [f64]) {
+        // Beyond the onset of slip a solution grows roughly with its load.
+        if self.path == Path::Load {
+            x.iter_mut().for_each(|x| *x *= growth);
         }
     }
 }

@@ -203,8 +203,9 @@ impl<'a, 'b> Search<'a, 'b> {
                 self.envelope.height_of(&sample, group) > ONSET_RIVAL * self.envelope.height(group)
             });
             if rivals {
+                let before = self.envelope.samples.len();
                 self.envelope.insert(sample);
-                found = true;
+                found |= self.envelope.samples.len() > before;
             }
         }
         Ok(found)

@@ -9,6 +9,9 @@ pub trait Parametrised: System {
 
     /// Replaces `x` by a start at the present, small parameter, if it knows a better one.
     fn easy_start(&self, x: &mut [f64]);
+
+    /// Predicts the solution after the parameter has grown by the factor `growth`.
+    fn predict(&self, growth: f64, x: &mut [f64]);
 }
 
 /// Parameters at which a first solution is tried, one after the other.
@@ -50,6 +53,7 @@ pub fn homotopy(system: &mut impl Parametrised, x: &mut [f64], settings: NewtonS
     while logarithm < 0.0 && step >= SHORTEST_STEP && iterations < BUDGET {
         let next = (logarithm + step).min(0.0);
         trial.copy_from_slice(x);
+        system.predict((next - logarithm).exp(), &mut trial);
         system.set_scale(next.exp());
         report = newton(system, &mut trial, settings);
         iterations += report.iterations;
