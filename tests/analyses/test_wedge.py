@@ -144,8 +144,8 @@ def test_found_peaks_are_those_of_time_integration(name):
 def sprung(load, factor):
     """Two blades, coupled to one another, on a wedge with a spring of its own: a published system.
 
-    Its numbers stand in published scripts: blades of 1 kg, 20 kg/s, three springs of 3e5 N/m each, 7e5 N/m
-    between them; a wedge of 0.1 kg, 30 degrees, friction 0.5, 120 N; forces of -20 and 5 N.
+    Its numbers stand in published scripts: blades of 1 kg, 20 kg/s, three springs of 3e5 N/m each,
+    7e5 N/m between them; a wedge of 0.1 kg, 30 degrees, friction 0.5, 120 N; forces of -20 and 5 N.
     """
     blade = ss.Structure(np.eye(2), [[6e5, -3e5], [-3e5, 6e5]], 20.0 * np.eye(2), ["x", "y"])
     between = [ss.Coupling(f"left.{one}", f"right.{one}", stiffness=7e5) for one in "xy"]
