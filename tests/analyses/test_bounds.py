@@ -100,6 +100,28 @@ def test_transients_from_random_starts_lie_inside():
     assert max(moved) > 1e-2
 
 
+@pytest.mark.slow
+def test_a_search_over_both_tractions_finds_no_more():
+    """9 x 9 tractions at the start of a motion, as far as they last."""
+    model = pads()
+    frf = ss.forced_response(model, [12.0, 15.0], 31, residual="bounds", observe=["a.x"])
+    assert set(frf.unique) == {"no"}
+    for place, omega in enumerate(frf.omega):
+        found = []
+        for a, b in np.ndindex(9, 9):
+            forces = [0.99 * (a / 4.0 - 1.0), 2.376 * (b / 4.0 - 1.0)]
+            start = ss.State(model, contact_force=forces)
+            run = ss.transient(
+                model, omega=omega, periods=2000, start=start, tolerance=1e-8, keep=1
+            )
+            assert run.status == "settled"
+            found.append(run.amplitude("a.x"))
+        lower, upper = frf.lower("a.x")[place], frf.upper("a.x")[place]
+        assert max(found) > 1.005 * min(found)
+        assert lower * (1.0 - SEARCH) <= min(found)
+        assert max(found) <= upper * (1.0 + SEARCH)
+
+
 def test_cost_in_evaluations(bounded):
     plain = ss.forced_response(pads(), GRID, 7, observe=["a.x"])
     assert bounded.counters["evaluations"] <= 6 * plain.counters["evaluations"]

@@ -141,6 +141,45 @@ def test_found_peaks_are_those_of_time_integration(name):
     assert integrated[1] == max(integrated)
 
 
+def sprung(load, factor):
+    """Two blades, coupled to one another, on a wedge with a spring of its own: a published system.
+
+    Its numbers stand in published scripts: blades of 1 kg, 20 kg/s, three springs of 3e5 N/m each,
+    7e5 N/m between them; a wedge of 0.1 kg, 30 degrees, friction 0.5, 120 N; forces of -20 and 5 N.
+    """
+    blade = ss.Structure(np.eye(2), [[6e5, -3e5], [-3e5, 6e5]], 20.0 * np.eye(2), ["x", "y"])
+    between = [ss.Coupling(f"left.{one}", f"right.{one}", stiffness=7e5) for one in "xy"]
+    wedge = replace(WEDGE, angle=30.0, friction=0.5, load=load)
+    model = wedge.inside(
+        ss.join({"left": blade, "right": blade}, between),
+        left_dofs=["left.x", "left.y"],
+        right_dofs=["right.x", "right.y"],
+        forces=[ss.Force("left.y", -20.0 * factor), ss.Force("right.x", 5.0 * factor)],
+    )
+    free = model.structure
+    own = np.array([[one == f"damper.{axis}" for one in free.dofs] for axis in "xy"], dtype=float)
+    spring = 3e5 * np.outer(own[0] - own[1], own[0] - own[1])
+    stiffness = free.stiffness + spring
+    return model.with_structure(ss.Structure(free.mass, stiffness, free.damping, free.dofs))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("load", "factor"), [(120.0, 1.0), (120.0, 3.0)])
+def test_peaks_of_a_published_system_are_those_of_time_integration(load, factor):
+    """One face separates at the peak."""
+    model = sprung(load, factor)
+    grid = 2.0 * np.pi * np.linspace(145.0, 235.0, 121)
+    curve = ss.forced_response(model, grid, 31, observe=["left.y"], stability=False)
+    peak = curve.peak("left.y")
+    assert not peak.at_edge
+    at = ss.forced_response(model, [peak.omega], 31, observe=["left.y"], stability=False)
+    opens = [at.open_fraction(side)[0, 0] for side in ("left", "right")]
+    assert max(opens) > 0.2
+    assert min(opens) <= 0.0
+    run = ss.transient(model, omega=peak.omega, periods=600, scheme="exact", keep=1)
+    assert peak.amplitude == pytest.approx(run.amplitude("left.y"), rel=5e-4)
+
+
 @pytest.mark.parametrize(
     ("parameter", "step"),
     [("friction", 1e-4), ("tangential_stiffness", 30.0), ("normal_stiffness", 30.0)],
