@@ -56,7 +56,8 @@ pub(super) fn follow(
         let derivative = if derivatives { shooting.derivative() } else { Mat::new() };
         segments.push(Segment { image, rate, derivative, slipped: shooting.slipped().to_vec() });
     }
-    shooting.join(starts, &mut segments)?;
+    let ends = segments.iter_mut().map(|one| (&mut one.image, &mut one.derivative));
+    shooting.join(starts, ends)?;
     Some(segments)
 }
 

@@ -3,7 +3,6 @@
 
 use super::loop_memory::LoopMemory;
 use super::rotation::Rotation;
-use super::segments::Segment;
 use crate::contact::{PointState, Residual};
 use crate::motion::{Flow, FlowEvent, LinearPhase, ModalSystem, State, Transition};
 use crate::solve::{norm, System};
@@ -141,22 +140,26 @@ impl<'a> Shooting<'a> {
     }
 
     /// Completes what contacts without sliders remember behind segments that have all been followed, in
-    /// their images and derivatives.
-    pub(super) fn join(&mut self, starts: &[f64], segments: &mut [Segment]) -> Option<()> {
+    /// the image and the derivative of each.
+    pub(super) fn join<'s>(
+        &mut self,
+        starts: &[f64],
+        segments: impl ExactSizeIterator<Item = (&'s mut Vec<f64>, &'s mut Mat<f64>)>,
+    ) -> Option<()> {
         let (size, count) = (self.coordinates.size(), segments.len());
         if count == 1 || LoopMemory::places(self.coordinates.system()) == 0 {
             return Some(());
         }
         self.memory.join()?;
         let all = System::size(self);
-        for (number, (one, start)) in segments.iter_mut().zip(starts.chunks_exact(all)).enumerate()
-        {
+        let segments = segments.zip(starts.chunks_exact(all)).enumerate();
+        for (number, ((image, derivative), start)) in segments {
             let side = if self.symmetric && number + 1 == count { -1.0 } else { 1.0 };
             let numbers = self.memory.behind(number, start);
-            one.image[size..].iter_mut().zip(numbers).for_each(|(to, own)| *to = side * own);
-            if one.derivative.nrows() > 0 {
-                self.memory.derive(number, &mut one.derivative);
-                let mut rows = one.derivative.get_mut(size.., ..);
+            image[size..].iter_mut().zip(numbers).for_each(|(to, own)| *to = side * own);
+            if derivative.nrows() > 0 {
+                self.memory.derive(number, derivative);
+                let mut rows = derivative.get_mut(size.., ..);
                 rows *= faer::Scale(side);
             }
         }
