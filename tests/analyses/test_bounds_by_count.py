@@ -39,3 +39,27 @@ def test_random_residuals_lie_inside(benchmark, seed):
         amplitude = other.amplitude("a.x")[held]
         assert (amplitude <= upper[held] * (1.0 + SEARCH)).all()
         assert (amplitude >= lower[held] * (1.0 - SEARCH)).all()
+
+
+@pytest.mark.parametrize(("seed", "at"), [(1, 8), (5, 10), (19, 5)])
+def test_vibrations_beside_that_of_the_curve_lie_inside(benchmark, seed, at):
+    """Motions in time from random starts settle elsewhere too where the normal load varies."""
+    rng = np.random.default_rng(seed)
+    model = benchmark.system(rng)
+    natural = np.sort(ss.natural_frequencies(model))
+    grid = np.linspace(0.6 * natural[0], 1.15 * natural[2], 12)
+    frf = ss.forced_response(model, grid, 15, observe=["a.x"], residual="bounds", stability=False)
+    lower, upper = frf.lower("a.x")[at], frf.upper("a.x")[at]
+    assert upper > 1.05 * lower
+    assert frf.unique[at] != "yes"
+    size, settled = len(model.structure), []
+    for _ in range(6):
+        start = ss.State(model, rng.normal(0.0, 2e-2, size), rng.normal(0.0, 0.3, size))
+        motion = ss.transient(
+            model, omega=grid[at], periods=600, start=start, tolerance=1e-6, keep=1
+        )
+        if motion.status == "settled":
+            settled.append(motion.amplitude("a.x"))
+    assert len(settled) >= 2
+    assert max(settled) <= upper * 1.002
+    assert min(settled) >= lower / 1.002

@@ -23,6 +23,8 @@ use crate::Error;
 
 /// Halvings of the way to other sliders after which there is no motion with them.
 const HALVINGS: i32 = 3;
+/// Iterations in which a far start leads to a motion.
+const LOOK: usize = 30;
 /// Distance from its limit, relative to its range, at which a slider is free to move: derivatives are
 /// those inwards.
 const INSIDE: f64 = 1e-7;
@@ -154,6 +156,15 @@ impl<'a> SliderBalance<'a> {
         let mut motion = HeldMotion::new(sliders, &held, self.seen(&x, &back));
         self.measure(&mut motion, slopes)?;
         Some(motion)
+    }
+
+    /// [`Self::solve`] from a start that may lead nowhere: a few iterations show whether it does.
+    pub(crate) fn look(&mut self, sliders: &[f64], start: &[f64]) -> Option<HeldMotion> {
+        let settings = self.settings;
+        self.settings.max_iterations = LOOK.min(settings.max_iterations);
+        let found = self.solve(sliders, Some(start), true);
+        self.settings = settings;
+        found
     }
 
     /// Displacements as they are seen from sliders.

@@ -6,6 +6,8 @@
 //! along the exact gradient of the balance (quasi-Newton, Broyden 1970; Nocedal and Wright 2006,
 //! chapter 6), which the law itself projects to what is admissible. What was extreme at one frequency
 //! is followed to the next, forwards and then backwards; at every other point all corners are tried.
+//! Where laws are not monotone, other vibrations may exist beside that of the curve: they are looked
+//! for from starts far from it.
 //!
 //! What is found is attained, so that these are *inner* bounds: others could lie outside. Where all
 //! laws are monotone operators and the structure is damped there is one vibration alone, and the two
@@ -25,6 +27,19 @@ use std::sync::Arc;
 
 /// Points after which all corners are tried again.
 const SURVEY: usize = 2;
+
+/// Distance, relative to the frequency, after which motions far from the curve's are looked for again.
+const APART: f64 = 0.04;
+
+/// What is tried at a point beside what its neighbour has found.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Survey {
+    /// All corners of the sliders.
+    pub(super) corners: bool,
+    /// Motions far from that of the curve.
+    pub(super) starts: bool,
+}
+
 /// What is known at a point.
 #[derive(Default)]
 pub(super) struct Found {
@@ -120,12 +135,15 @@ impl<'a> Search<'a> {
     ) -> Result<Vec<Found>, Error> {
         let count = solution.points.len();
         let mut found: Vec<Found> = Vec::with_capacity(count);
+        let mut last = f64::NEG_INFINITY;
         for (n, point) in solution.points.iter().enumerate() {
             if !progress(n as f64 / count as f64) {
                 break;
             }
-            let survey = n % SURVEY == 0 || n + 1 == count;
-            let next = self.point(point, found.last(), survey)?;
+            let corners = n % SURVEY == 0 || n + 1 == count;
+            let starts = (point.omega - last).abs() >= APART * point.omega;
+            last = if starts { point.omega } else { last };
+            let next = self.point(point, found.last(), Survey { corners, starts })?;
             found.push(next);
         }
         for n in (0..found.len().saturating_sub(1)).rev() {
@@ -143,7 +161,7 @@ impl<'a> Search<'a> {
         &mut self,
         point: &Point,
         before: Option<&Found>,
-        survey: bool,
+        survey: Survey,
     ) -> Result<Found, Error> {
         let Some(mut pool) = self.open(point)? else { return Ok(Found::default()) };
         let Some(nominal) = pool.balance.of_point(point, self.settings.residual) else {
@@ -153,12 +171,15 @@ impl<'a> Search<'a> {
         if let Some((before, from)) = before.and_then(|one| Some((one, one.nominal.as_ref()?))) {
             pool.continue_from(from, before.extremes.iter());
         }
+        if survey.starts {
+            pool.try_starts(before.and_then(|one| one.nominal.as_ref()));
+        }
         self.learn(&pool.motions);
         let known: Vec<(usize, [f64; 2])> = self.ranges.iter().map(|(n, r)| (*n, *r)).collect();
         let held = |found: &Found| found.nominal.as_ref().map(|motion| motion.held().count());
         let lost = pool.motions[0].held().count() < known.len();
         let changed = before.and_then(held) != Some(pool.motions[0].held().count());
-        if survey || changed {
+        if survey.corners || changed {
             pool.try_corners(&known, lost);
             self.learn(&pool.motions);
         }

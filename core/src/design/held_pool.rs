@@ -4,6 +4,8 @@ use crate::balance::{HeldMotion, SliderBalance};
 
 /// Corners that are tried at most.
 const CORNERS: usize = 8;
+/// Vibrations from which others are looked for, as complex multiples of the curve's.
+const STARTS: [[f64; 2]; 2] = [[0.0, 3.0], [-3.0, 0.0]];
 /// Width of the bounds, relative to the amplitude, that is none.
 pub(super) const NO_WIDTH: f64 = 1e-9;
 /// Distance of two positions, relative to their range, that is none.
@@ -59,6 +61,25 @@ impl HeldPool<'_> {
             if lost {
                 self.motions.extend(self.balance.solve(&target, None, true));
             }
+        }
+    }
+
+    /// Looks for motions far from that of the curve: from large vibrations out of phase with it, in
+    /// which contacts slip and part that stick and touch here, and from the neighbour as it is.
+    pub(super) fn try_starts(&mut self, before: Option<&HeldMotion>) {
+        let nominal = self.motions[0].clone();
+        let target = beyond(&nominal, &nominal.sliders);
+        let slots = nominal.u.len() / nominal.sliders.len().max(1);
+        let turned = |[re, im]: &[f64; 2]| {
+            let mut u = nominal.u.clone();
+            let harmonics = u.chunks_exact_mut(slots).flat_map(|own| own[1..].chunks_exact_mut(2));
+            harmonics
+                .for_each(|x| x.copy_from_slice(&[re * x[0] - im * x[1], im * x[0] + re * x[1]]));
+            u
+        };
+        let beside = before.filter(|one| one.u.len() == nominal.u.len()).map(|one| one.u.clone());
+        for start in STARTS.iter().map(turned).chain(beside) {
+            self.motions.extend(self.balance.look(&target, &start));
         }
     }
 

@@ -4,7 +4,7 @@
 //! any curve ([`super::bounds`]); around the highest point of either, points are added at the tops of
 //! parabolas and, since a bound may end at a jump, halfway to the farther neighbour in turn. What is the same from one frequency to the next has a peak between these two.
 
-use super::bounds::{tables_of, Found, Search};
+use super::bounds::{tables_of, Found, Search, Survey};
 use super::held_pool::NO_WIDTH;
 use super::samples::{predicted, Sample};
 use crate::balance::{CurveEnd, ForcedBalance, Point, Progress, Settings, Solution, Uniqueness};
@@ -104,7 +104,8 @@ pub(super) fn bound_peak(
                 next_to(&places, (best, sign), added % 2 == 1).filter(|_| !known && progress(1.0));
             let Some(omega) = next else { break };
             let point = Arc::new(balance.solve(omega, predicted(samples, omega).as_ref())?);
-            let found = search.point(&point, Some(&places[best].found), true)?;
+            let survey = Survey { corners: true, starts: false };
+            let found = search.point(&point, Some(&places[best].found), survey)?;
             let after = places.partition_point(|other| other.point.omega < omega);
             places.insert(after, Place { point, found });
         }
