@@ -5,9 +5,9 @@ Usage::
     python benchmarks/estimates.py
 
 Beams, chains with few and many contacts, damping that is not proportional, microslip, a stop, a
-node in space and mistuned rings of which 1, 2 or 4 contacts slip, with 1, 3, 9 and 15 harmonics: one
-frequency from nothing, and a curve whose solutions start from their neighbours. The smallest times
-of runs on one thread. The ratios are to stay below 1.
+node in space and mistuned rings of which 1, 2 or 4 contacts slip, with 1, 3, 9 and 15 harmonics:
+one frequency from nothing, and a curve whose solutions start from their neighbours. The smallest
+times of runs on one thread. The first of the two ratios is to stay below 1.
 """
 
 from __future__ import annotations

@@ -63,7 +63,7 @@ def test_a_point_that_nothing_affordable_solves_is_given_up_early(tmp_path) -> N
     assert frf.arrays.solved.all()
     assert not frf.converged.any()
     worst = max(frf.error_estimate(dof)[0] / frf.amplitude(dof)[0] for dof in frf.dofs)
-    # A second step counts, up to twice the first, and harmonics that are out of reach count as well.
+    # A second step counts, up to twice the first; harmonics that are out of reach count as well.
     assert frf.settings.tolerance < worst < 0.5
     assert frf.iterations[0] < 1000
     assert "raise tolerance" in frf.status[0].advice
