@@ -6,6 +6,7 @@ import difflib
 import os
 import re
 import stat
+import unicodedata
 from collections.abc import Collection, Iterable, Sequence
 from importlib import import_module
 from numbers import Integral, Real
@@ -29,6 +30,8 @@ MAX_COUNT = 2**31 - 1
 Matrix: TypeAlias = NDArray[np.float64]
 _SHOWN = 24
 _FEW = 3
+# Unicode's control characters, line ends and halves of characters.
+_NO_TEXT = frozenset({"Cc", "Cs", "Zl", "Zp"})
 _LONGEST = 60
 # A sign, zeros and a point before a digit that is none: the mantissa of a number that is not 0.
 _NOT_ZERO = re.compile(r"\s*[+-]?[0._]*[1-9]")
@@ -106,11 +109,13 @@ def listed(names: Sequence[str]) -> str:
 
 
 def text(value: object, entry: str) -> str:
-    """Return a name that is text and not blank."""
+    """Return a name that is text, not blank, and that a file can hold on a line."""
     if not isinstance(value, str):
         raise EntryError(entry, f": {brief(value)} is not text; give a name in quotes")
     if not value.strip():
         raise EntryError(entry, f": {brief(value)} is empty; give a name")
+    if any(unicodedata.category(character) in _NO_TEXT for character in value):
+        raise EntryError(entry, f": {brief(value)} has a control character; give a name without")
     return value
 
 

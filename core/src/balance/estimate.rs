@@ -67,7 +67,7 @@ impl ForcedBalance<'_> {
         let order = extension.highest;
         let least = if climb { (8 * (order + 1)).next_power_of_two() } else { 0 };
         let model = self.evaluated(point.samples.map(|samples| samples.max(least)))?;
-        let table = self.table(order);
+        let table = self.coarse_table(order);
         let solution = Unknowns { harmonics: harmonics.clone(), values: x.to_vec() };
         let residual = self.settings.residual;
         let ask = self.interruption();

@@ -33,7 +33,7 @@ pub struct ForcedBalance<'a> {
     pub(super) observe: &'a [usize],
     half_wave: bool,
     forced: Vec<usize>,
-    tables: BTreeMap<usize, Arc<SampleTable>>,
+    tables: Tables,
     evaluations: Evaluations<'a>,
     pub(super) control: ResolutionControl,
     pub(super) scale: Scale,
@@ -46,11 +46,20 @@ pub struct ForcedBalance<'a> {
     pub(super) profile: Profile,
 }
 
+/// Sample tables by highest harmonic.
+#[derive(Default)]
+struct Tables {
+    /// Of solutions.
+    fine: BTreeMap<usize, Arc<SampleTable>>,
+    /// Of error estimates.
+    coarse: BTreeMap<usize, Arc<SampleTable>>,
+}
+
 /// What passes from one balance to the next: sample tables, the level that automatic harmonics and
 /// samples start from, and the account of the work.
 #[derive(Default)]
 pub(crate) struct WarmStart {
-    tables: BTreeMap<usize, Arc<SampleTable>>,
+    tables: Tables,
     level: Level,
     half_wave: bool,
     pub(crate) profile: Profile,
@@ -83,7 +92,7 @@ impl<'a> ForcedBalance<'a> {
             half_wave,
             control: ResolutionControl::new(settings, &forced),
             forced,
-            tables: BTreeMap::new(),
+            tables: Tables::default(),
             evaluations: Evaluations::new(model.clone()),
             model,
             scale: Scale::default(),
@@ -163,11 +172,15 @@ impl<'a> ForcedBalance<'a> {
 
     pub(crate) fn table(&mut self, highest: usize) -> Arc<SampleTable> {
         let half_wave = self.half_wave;
-        let table = self
-            .tables
-            .entry(highest)
-            .or_insert_with(|| Arc::new(SampleTable::new(Harmonics::new(highest, half_wave))));
-        Arc::clone(table)
+        let table = || Arc::new(SampleTable::new(Harmonics::new(highest, half_wave)));
+        Arc::clone(self.tables.fine.entry(highest).or_insert_with(table))
+    }
+
+    /// The table of an error estimate.
+    pub(super) fn coarse_table(&mut self, highest: usize) -> Arc<SampleTable> {
+        let half_wave = self.half_wave;
+        let table = || Arc::new(SampleTable::coarse(Harmonics::new(highest, half_wave)));
+        Arc::clone(self.tables.coarse.entry(highest).or_insert_with(table))
     }
 
     /// The model as it is evaluated with some samples per period, or with none.

@@ -15,7 +15,7 @@ const BLOCK: usize = 32;
 /// Samples that are summed together.
 const LANES: usize = 16;
 
-/// Distance of the samples of [`SampleTable::jets`] on that grid.
+/// Distance of the samples of [`SampleTable::jets`] on that grid, and of all samples of a coarse table.
 const COARSER: usize = 4;
 
 /// Angles closer than this are the same.
@@ -35,7 +35,10 @@ pub struct TurningPoint {
 #[derive(Debug, Clone)]
 pub struct SampleTable {
     harmonics: Harmonics,
+    /// Intervals of a quarter of the period.
     quarter: usize,
+    /// How many of them lie between two samples of [`SampleTable::jets`].
+    stride: usize,
     cos: Vec<f64>,
     sin: Vec<f64>,
     instants: Instants,
@@ -45,21 +48,37 @@ impl SampleTable {
     /// The table of a set of harmonics.
     #[must_use]
     pub fn new(harmonics: Harmonics) -> Self {
-        let quarter = (SAMPLES_PER_HARMONIC * harmonics.highest().max(4)).div_ceil(4);
-        let quarter = quarter.next_multiple_of(COARSER);
+        Self::on_grid(harmonics, COARSER)
+    }
+
+    /// The table of motions that need not be followed to the last digit, on a quarter of the samples: it
+    /// brackets turning points that are no closer than the harmonics usually have them, and takes a
+    /// quarter of the effort.
+    #[must_use]
+    pub fn coarse(harmonics: Harmonics) -> Self {
+        Self::on_grid(harmonics, 1)
+    }
+
+    fn on_grid(harmonics: Harmonics, stride: usize) -> Self {
+        let quarter =
+            stride * (SAMPLES_PER_HARMONIC / COARSER * harmonics.highest().max(4)).div_ceil(4);
         // The angles of all orders are multiples of the same step.
-        let count = 4 * quarter;
-        let step = std::f64::consts::TAU / count as f64;
-        let unit: Vec<_> = (0..count).map(|i| (i as f64 * step).sin_cos()).collect();
-        let (mut cos, mut sin) = (Vec::new(), Vec::new());
-        for &order in harmonics.oscillating() {
-            let angles = (0..padded(quarter + 1)).map(|i| unit[order * i % count]);
-            angles.for_each(|(s, c)| {
-                cos.push(c);
-                sin.push(s);
-            });
+        let unit = circle(quarter);
+        let row = padded(quarter + 1);
+        let size = row * harmonics.oscillating().len();
+        let (mut cos, mut sin) = (vec![0.0; size], vec![0.0; size]);
+        let rows = cos.chunks_exact_mut(row).zip(sin.chunks_exact_mut(row));
+        for (&order, (cos, sin)) in harmonics.oscillating().iter().zip(rows) {
+            let mut at = 0;
+            for (cos, sin) in cos.iter_mut().zip(sin) {
+                [*cos, *sin] = unit[at];
+                at += order;
+                if at >= unit.len() {
+                    at -= unit.len();
+                }
+            }
         }
-        Self { harmonics, quarter, cos, sin, instants: Instants::default() }
+        Self { harmonics, quarter, stride, cos, sin, instants: Instants::default() }
     }
 
     /// The basis at the first `count` of `samples` equidistant instants of a period, instant after
@@ -143,18 +162,18 @@ impl SampleTable {
     }
 
     fn coarse_quarter(&self) -> usize {
-        self.quarter / COARSER
+        self.quarter / self.stride
     }
 
     /// Values, slopes and curvatures of a series at equidistant angles of `[0, span)`, a quarter
     /// as many as turning points are bracketed on.
     #[must_use]
     pub fn jets(&self, series: &[f64]) -> [Vec<f64>; 3] {
-        let mut value = self.sampled(series, COARSER, |_, a, b| (a, b));
+        let mut value = self.sampled(series, self.stride, |_, a, b| (a, b));
         let mean = self.harmonics.mean(series);
         value.iter_mut().for_each(|value| *value += mean);
-        let slope = self.sampled(series, COARSER, |k, a, b| (k * b, -k * a));
-        let curvature = self.sampled(series, COARSER, |k, a, b| (-k * k * a, -k * k * b));
+        let slope = self.sampled(series, self.stride, |k, a, b| (k * b, -k * a));
+        let curvature = self.sampled(series, self.stride, |k, a, b| (-k * k * a, -k * k * b));
         [value, slope, curvature]
     }
 
@@ -309,6 +328,24 @@ impl SampleTable {
         }
         TurningPoint { theta, value: jet[0] }
     }
+}
+
+/// Cosines and sines at the multiples of a `quarter`-th of a right angle, once around: those of an
+/// eighth, reflected.
+fn circle(quarter: usize) -> Vec<[f64; 2]> {
+    let step = std::f64::consts::FRAC_PI_2 / quarter as f64;
+    let mut unit = vec![[1.0, 0.0]; 4 * quarter];
+    for i in 0..=quarter / 2 {
+        let (s, c) = (i as f64 * step).sin_cos();
+        (unit[i], unit[quarter - i]) = ([c, s], [s, c]);
+    }
+    for i in 0..quarter {
+        let [c, s] = unit[i];
+        for (turn, rotated) in [[-s, c], [-c, -s], [s, -c]].into_iter().enumerate() {
+            unit[(turn + 1) * quarter + i] = rotated;
+        }
+    }
+    unit
 }
 
 /// Whether the second of three values of equal sign is closest to zero.
