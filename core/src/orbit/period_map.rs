@@ -57,7 +57,9 @@ pub struct Multipliers {
 }
 
 impl Multipliers {
-    fn largest(&self) -> f64 {
+    /// The largest modulus.
+    #[must_use]
+    pub fn largest(&self) -> f64 {
         self.values.first().map_or(0.0, |one| one.norm())
     }
 
