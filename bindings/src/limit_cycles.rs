@@ -134,7 +134,7 @@ pub fn period_multipliers<'py>(
     let (stiffness, model) = (matrix(&circulatory), Arc::clone(&problem.model));
     let found = py.detach(move || {
         let map = PeriodMap::new(&model)?.with_circulatory(stiffness.as_ref());
-        Ok(map.multipliers(omega, &motion, Some(tolerance)))
+        Ok(map.multipliers(omega, &motion, Some(tolerance)).filter(|found| !found.touches))
     });
     let found = found.map_err(refused)?;
     Ok(found.map(|found| {

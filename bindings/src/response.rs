@@ -144,7 +144,7 @@ pub fn forced_response<'py>(
             Frequencies::Grid(grid) => sweep(balance, &grid),
         }?;
         if stability && !model.is_monotone() {
-            decide_stability(model, settings.residual, &mut found, look)?;
+            decide_stability(model, settings, &mut found, look)?;
         }
         if let Some(proved) = bounds {
             bound(model, settings, &observe, proved, &mut found, look)?;

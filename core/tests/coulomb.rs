@@ -466,6 +466,38 @@ fn work_shares_and_histories_in_one_direction() {
     check_histories(1, 59);
 }
 
+/// Under half-wave symmetry the second half of the period mirrors the first, wherever the march begins.
+#[test]
+fn histories_of_half_wave_symmetric_motions_cover_the_period() {
+    let mut random = Random(97);
+    for n in 0..40 {
+        let case = random_case(&mut random, 2, 5);
+        let friction = case.law.parameters()[0].value;
+        let constant = Closure::Preload(random.between(0.1, 2.0));
+        let law = Coulomb::new(2, friction, 2.0, None, constant).unwrap();
+        let table = SampleTable::new(Harmonics::new(5, true));
+        let slots = table.harmonics().slots();
+        let u = motion(&table, &case.displacement[..2 * slots]);
+        let series = force(&law, u);
+        let count = 2_000;
+        let history = exact(&law).force_history(u, count);
+        for direction in 0..2 {
+            let own = &series[direction * slots..(direction + 1) * slots];
+            let mut basis = vec![0.0; slots];
+            let mut found = vec![0.0; slots];
+            for (sample, forces) in history.chunks_exact(2).enumerate() {
+                table.harmonics().basis(2.0 * PI * sample as f64 / count as f64, &mut basis);
+                let share = 2.0 * forces[direction] / count as f64;
+                found.iter_mut().zip(&basis).for_each(|(sum, b)| *sum += share * b);
+            }
+            assert_close(&found, own, 1e-4 * (1.0 + largest(&series)), &format!("{n}"));
+        }
+        let phases = exact(&law).phases(u);
+        let later = phases.iter().filter(|phase| phase.start >= PI).count();
+        assert!(phases.len() == 1 || later.abs_diff(phases.len() - later) <= 1, "{n}: {later}");
+    }
+}
+
 fn check_parameter_slopes(directions: usize, seed: u64) {
     let mut random = Random(seed);
     let mut errors = Vec::new();

@@ -12,6 +12,7 @@ use crate::model::FlutterModel;
 use crate::solve::at_parameter;
 use crate::structure::StuckMode;
 use crate::Error;
+use faer::Mat;
 use std::sync::Arc;
 
 /// Newton iterations for the first point.
@@ -26,6 +27,41 @@ const FURTHER: i32 = 50;
 const STILL: f64 = 1e-9;
 /// A frequency, relative to the highest natural one, at which nothing resonates.
 const OFF_RESONANCE: f64 = 1.37;
+
+/// Rounds on the springs of nonlinear laws, and their change that counts as none.
+const ROUNDS: usize = 50;
+const SAME: f64 = 1e-12;
+
+/// The stiffness with laws that never slip as springs of the first harmonic, at the amplitude of a mode at
+/// which the first contact slips. The stuck mode then has the frequency that it has there: it is found
+/// within a distance that its small damping sets.
+fn springs(
+    laws: &[Box<dyn ContactLaw>],
+    stiffness: &Mat<f64>,
+    limits: &[f64],
+    own: &StuckMode,
+) -> Mat<f64> {
+    let force = |i: usize| {
+        (0..limits.len()).map(|j| own.contact[j] * stiffness[(i, j)]).sum::<faer::c64>().norm()
+    };
+    let slips = (0..limits.len()).filter(|&i| limits[i].is_finite() && force(i) > 0.0);
+    let amplitude = slips.map(|i| limits[i] / force(i)).fold(f64::INFINITY, f64::min);
+    let mut next = stiffness.clone();
+    let mut point = 0;
+    for law in laws {
+        if let (1, true, true) =
+            (law.displacements(), limits[point].is_infinite(), amplitude.is_finite())
+        {
+            let size = amplitude * own.contact[point].norm();
+            if let Some(spring) = law.describing(size) {
+                // A stiff spring holds what would move it: the mean of before and after settles.
+                next[(point, point)] = 0.5 * (next[(point, point)] + spring.stiffness.re);
+            }
+        }
+        point += law.displacements();
+    }
+    next
+}
 
 /// A stuck mode that negative damping can excite.
 #[derive(Debug, Clone)]
@@ -74,6 +110,21 @@ impl Onset {
             stiffness = found.stiffness(&stiffness);
             modes = family.compliance().stuck_modes(stiffness.as_ref())?;
             rest = Some(found);
+        }
+        if rest.is_none() {
+            for _ in 0..ROUNDS {
+                let Some(next) =
+                    modes.get(mode).map(|own| springs(&laws, &stiffness, &limits, own))
+                else {
+                    break;
+                };
+                let change = (&next - &stiffness).norm_max();
+                stiffness = next;
+                if change <= SAME * stiffness.norm_max() {
+                    break;
+                }
+                modes = family.compliance().stuck_modes(stiffness.as_ref())?;
+            }
         }
         let largest = modes.iter().flat_map(|m| &m.contact).map(|u| u.norm()).fold(0.0, f64::max);
         let Some(own) = modes.get(mode) else {

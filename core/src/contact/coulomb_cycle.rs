@@ -242,11 +242,17 @@ impl Cycle {
     /// The traction at an angle, inside the cone to rounding, and the direction of slip there, zero
     /// without slip.
     pub(super) fn traction(&self, drive: &Drive<'_>, theta: f64) -> ([f64; 2], [f64; 2]) {
-        let (pull, [pressing, _]) = drive.at(theta);
-        let limit = drive.friction * pressing.max(0.0);
         let start = self.stretches[0].start;
         let span = drive.harmonics().span();
-        let theta = start + (theta - start).rem_euclid(span);
+        let spans = ((theta - start) / span).floor();
+        // Half a period of a half-wave symmetric motion is the mirror image of the other.
+        if drive.harmonics().half_wave() && spans.rem_euclid(2.0) == 1.0 {
+            let mirrored = self.traction(drive, theta - span);
+            return (mirrored.0.map(|t| -t), mirrored.1.map(|e| -e));
+        }
+        let (pull, [pressing, _]) = drive.at(theta);
+        let limit = drive.friction * pressing.max(0.0);
+        let theta = theta - spans * span;
         let after = self.stretches.partition_point(|stretch| stretch.end <= theta);
         let Stretch { state, .. } = &self.stretches[after.min(self.stretches.len() - 1)];
         match state {
@@ -271,18 +277,22 @@ impl Cycle {
     /// are as many `components`.
     pub(super) fn phases(&self, drive: &Drive<'_>, components: usize) -> Vec<Phase> {
         let span = drive.harmonics().span();
+        let spans = if drive.harmonics().half_wave() { 2 } else { 1 };
         let mut phases: Vec<Phase> = Vec::new();
-        for Stretch { start, end, state } in &self.stretches {
-            let middle = 0.5 * (start + end);
-            let (_, slip) = self.traction(drive, middle);
-            let states = (0..components).map(|i| match (i < drive.directions, state) {
-                (true, _) if slip[i] != 0.0 => PointState::slipping(slip[i]),
-                (false, State::Open) => PointState::Backward,
-                _ => PointState::Stuck,
-            });
-            let states = states.collect();
-            if phases.last().is_none_or(|last| last.states != states) {
-                phases.push(Phase { start: start.rem_euclid(span), states });
+        for number in 0..spans {
+            let turn = span * number as f64;
+            for Stretch { start, end, state } in &self.stretches {
+                let middle = 0.5 * (start + end) + turn;
+                let (_, slip) = self.traction(drive, middle);
+                let states = (0..components).map(|i| match (i < drive.directions, state) {
+                    (true, _) if slip[i] != 0.0 => PointState::slipping(slip[i]),
+                    (false, State::Open) => PointState::Backward,
+                    _ => PointState::Stuck,
+                });
+                let states = states.collect();
+                if phases.last().is_none_or(|last| last.states != states) {
+                    phases.push(Phase { start: (start + turn).rem_euclid(TAU), states });
+                }
             }
         }
         phases.sort_by(|a, b| a.start.total_cmp(&b.start));

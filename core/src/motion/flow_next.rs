@@ -127,20 +127,13 @@ impl Flow<'_> {
     fn begins_to_slide(&mut self, plane: SlipPlane, natural: f64, length: f64) -> Next {
         let [a, b] = plane.points;
         let [t, s] = plane.points.map(|point| self.series.force(point));
-        let limit = self.limit_series(a);
+        let limit = self.series.limit(self.system, a);
         let now = t[0].hypot(s[0]);
         let reach = reach_of(t, length) + reach_of(s, length) + reach_of(&limit, length);
         if reach < limit[0] - now {
             return Next::Stay;
         }
-        self.scratch.clear();
-        self.scratch.resize(2 * DEGREE + 1, 0.0);
-        for (series, sign) in [(&limit[..], 1.0), (t, -1.0), (s, -1.0)] {
-            for (j, a) in series.iter().enumerate() {
-                let (a, to) = (sign * a, &mut self.scratch[j..]);
-                to.iter_mut().zip(series).for_each(|(sum, b)| *sum += a * b);
-            }
-        }
+        self.series.fill_room(plane, &limit, &mut self.scratch);
         rescale(&mut self.scratch, natural);
         let size = limit[0] * self.system.limit_size(b, self.series.displacement());
         match self.leaves(length / natural, size) {
@@ -157,19 +150,6 @@ impl Flow<'_> {
         self.series.fill_pull(slide, &mut self.scratch);
         rescale(&mut self.scratch, natural);
         self.comes_to_rest(natural, length)
-    }
-
-    /// The slip limit of a point.
-    fn limit_series(&self, point: usize) -> Vec<f64> {
-        let Bound::Friction { friction, normal } = self.system.bounds[point] else {
-            let mut series = vec![0.0; DEGREE + 1];
-            series[0] = self.system.limits()[point];
-            return series;
-        };
-        let mut series: Vec<f64> = self.series.force(normal).to_vec();
-        series[0] += self.system.balanced(normal);
-        series.iter_mut().for_each(|a| *a *= friction);
-        series
     }
 
     /// Slip velocity in the direction of slip, on the unit interval.
@@ -263,7 +243,7 @@ fn reach_of(a: &[f64], length: f64) -> f64 {
 }
 
 /// `Σ a_n (length x)ⁿ`.
-fn rescale(a: &mut [f64], length: f64) {
+pub(super) fn rescale(a: &mut [f64], length: f64) {
     let mut scale = 1.0;
     for a in a {
         *a *= scale;

@@ -2,12 +2,14 @@
 
 use super::flow::Flow;
 use super::flow_event::{Event, FlowEvent, FlowSegment, Halt};
+use super::flow_next::rescale;
 use super::history::{History, Trace, TransientSettings};
 use super::microslip::Turn;
 use super::modal_system::{dot, ModalSystem};
 use super::polynomial::{sign_changes, value};
 use super::runge_kutta::RungeKutta;
 use super::state::State;
+use crate::contact::SlipPlane;
 use std::f64::consts::TAU;
 
 /// Share of a sampling interval by which rounding may miss an instant.
@@ -207,6 +209,21 @@ impl Extremes {
             segment.series.project(shape.iter().copied(), segment.length, &mut self.series);
             self.widen(range);
         }
+    }
+
+    /// Least `M² − |t|²` of a contact in a plane on a stretch of the motion, relative to the greatest M².
+    pub(crate) fn least_room(
+        &mut self,
+        system: &ModalSystem,
+        segment: &FlowSegment<'_>,
+        plane: SlipPlane,
+    ) -> f64 {
+        let limit = segment.series.limit(system, plane.points[0]);
+        segment.series.fill_room(plane, &limit, &mut self.series);
+        rescale(&mut self.series, segment.length);
+        let mut range = [f64::INFINITY, f64::NEG_INFINITY];
+        self.widen(&mut range);
+        range[0] / value(&limit, segment.length).max(limit[0]).powi(2)
     }
 
     /// Widens a range by the values of the polynomial.

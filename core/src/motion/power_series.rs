@@ -11,6 +11,7 @@ use super::modal_system::{dot, ContactState, ModalSystem};
 use super::polynomial::{self, DEGREE, TRUNCATION};
 use super::sliding::{Slide, Swing};
 use super::state::State;
+use crate::contact::{Bound, SlipPlane};
 
 /// Longest step in units of the fastest rate: beyond it rounding errors of fast modes would grow.
 const LONGEST: f64 = 12.0;
@@ -350,6 +351,32 @@ impl PowerSeries {
     /// λ of a contact that slides, with all its powers.
     pub(super) fn fill_pull(&self, slide: usize, out: &mut Vec<f64>) {
         self.slides[slide].fill_pull(&self.contact, out);
+    }
+
+    /// Coefficients of the slip limit of a point.
+    pub(crate) fn limit(&self, system: &ModalSystem, point: usize) -> Vec<f64> {
+        let Bound::Friction { friction, normal } = system.bounds[point] else {
+            let mut series = vec![0.0; DEGREE + 1];
+            series[0] = system.limits()[point];
+            return series;
+        };
+        let mut series: Vec<f64> = self.force(normal).to_vec();
+        series[0] += system.balanced(normal);
+        series.iter_mut().for_each(|a| *a *= friction);
+        series
+    }
+
+    /// `M² − |t|²` of a traction in a plane under this limit M.
+    pub(crate) fn fill_room(&self, plane: SlipPlane, limit: &[f64], out: &mut Vec<f64>) {
+        out.clear();
+        out.resize(2 * DEGREE + 1, 0.0);
+        let [t, s] = plane.points.map(|point| self.force(point));
+        for (series, sign) in [(limit, 1.0), (t, -1.0), (s, -1.0)] {
+            for (j, a) in series.iter().enumerate() {
+                let (a, to) = (sign * a, &mut out[j..]);
+                to.iter_mut().zip(series).for_each(|(sum, b)| *sum += a * b);
+            }
+        }
     }
 
     /// Modal displacements and velocities [1/s] at τ.

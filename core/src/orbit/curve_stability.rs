@@ -1,26 +1,37 @@
 //! The stability of the points of a forced curve.
 
-use super::period_map::PeriodMap;
-use crate::balance::{with_history, Progress, Solution};
+use super::period_map::{Multipliers, PeriodMap};
+use crate::balance::{
+    with_history, ForcedBalance, HarmonicChoice, Point, Progress, Settings, Solution,
+};
 use crate::contact::Residual;
 use crate::model::Model;
 use crate::Error;
 use std::sync::Arc;
 
-/// Decides the stability of the points of a curve under the residual assumed by its balance, as far as
-/// the map over a period tells it; those of a travelling wave stay undecided.
+/// Change of a multiplier over the relative error of the motion: measured, 5 to 20, and more where contacts
+/// bounce.
+const SENSITIVITY: f64 = 30.0;
+
+/// Decides the stability of the points of a curve, as far as the map over a period tells it; those of a
+/// travelling wave stay undecided. `settings` are those of its balance.
+///
+/// Where the harmonics left out could take the largest multiplier to the other side of 1, the point is
+/// solved with about twice as many: it is decided if they change the multiplier by less than its distance
+/// from 1.
 ///
 /// # Errors
 /// As [`PeriodMap::new`], but for a wave.
 pub fn decide_stability(
     model: &Model,
-    residual: Residual,
+    settings: Settings,
     solution: &mut Solution,
     progress: &Progress<'_>,
 ) -> Result<(), Error> {
     if model.is_travelling_wave() {
         return Ok(());
     }
+    let residual = settings.residual;
     let history = match residual {
         Residual::FromRest => with_history(model)?,
         Residual::Centred | Residual::Value(_) => None,
@@ -30,10 +41,54 @@ pub fn decide_stability(
         if !progress(1.0) {
             return Ok(());
         }
-        let Some(motion) = point.unknowns().filter(|_| point.is_solved()) else { continue };
-        let stable =
-            map.multipliers(point.omega, motion, None).and_then(|multipliers| multipliers.stable());
+        if !point.is_solved() {
+            continue;
+        }
+        let Some(found) = along(&map, point) else { continue };
+        let away = (found.largest() - 1.0).abs();
+        let stable = if away > SENSITIVITY * relative_error(point) {
+            found.stable()
+        } else {
+            let finer = with_more_harmonics(model, settings, point, progress);
+            finer.and_then(|finer| decided(&found, &along(&map, &finer)?))
+        };
         Arc::make_mut(point).stable = stable;
     }
     Ok(())
+}
+
+/// What the estimate gives of the largest vibration of the observed DOFs; nothing without an estimate.
+fn relative_error(point: &Point) -> f64 {
+    let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
+    let error = largest(&mut point.error_estimate.iter().copied());
+    let series = point.displacement.chunks_exact(point.harmonics + 1);
+    let vibration = largest(&mut series.map(|row| row[1..].iter().map(|x| x.norm()).sum()));
+    if error > 0.0 {
+        error / vibration
+    } else {
+        0.0
+    }
+}
+
+/// The point with about twice as many harmonics; nothing if it cannot be solved.
+fn with_more_harmonics(
+    model: &Model,
+    settings: Settings,
+    point: &Point,
+    progress: &Progress<'_>,
+) -> Option<Point> {
+    let finer = Settings { harmonics: HarmonicChoice::Fixed(2 * point.harmonics + 1), ..settings };
+    let mut balance = ForcedBalance::new(model, finer, &[]).ok()?.watched(progress);
+    let solved = balance.solve(point.omega, point.unknowns()).ok()?;
+    solved.is_solved().then_some(solved)
+}
+
+fn along(map: &PeriodMap, point: &Point) -> Option<Multipliers> {
+    map.multipliers(point.omega, point.unknowns()?, None)
+}
+
+/// The verdict of better multipliers, if they differ less from the others than from 1.
+fn decided(found: &Multipliers, finer: &Multipliers) -> Option<bool> {
+    let change = (finer.largest() - found.largest()).abs();
+    finer.stable().filter(|_| (finer.largest() - 1.0).abs() > change)
 }

@@ -27,6 +27,9 @@ const ASIDE: [f64; 3] = [1e-6, 4.0 * SHORT, 0.25];
 const MOST_ROUNDS: usize = 200;
 /// Change of a state over a round, relative to the largest, that counts as none.
 const PERIODIC: f64 = 1e-12;
+/// Departure from the force of a spring over a period, relative to its range, that is rounding where a
+/// contact touches its limit.
+const GRAZES: f64 = 1e-9;
 
 /// A law, or a part of one that remembers by itself, with its places among displacements and states.
 pub(super) struct Part {
@@ -105,10 +108,13 @@ impl PartPath {
         let mut search = Search { part, u, scale: 0.0, events: Vec::new() };
         let (mut state, mut linear) = (start.clone(), true);
         let mut known = Vec::with_capacity(angles.len());
+        let mut spring = Spring::new(part);
         for (n, &theta) in angles.iter().enumerate() {
             if n > 0 {
-                let jacobian = step(part, u, angles[n - 1], theta, &mut state);
+                let (jacobian, force) =
+                    step_with_force(part, u, [angles[n - 1], theta], &mut state);
                 linear &= is_linear(part, &jacobian);
+                spring.follow(&u.at(part, theta), &force);
             }
             let here = search.tangent(theta, &state);
             search.scale = here.iter().fold(search.scale, |most, x| most.max(x.abs()));
@@ -121,7 +127,8 @@ impl PartPath {
             turns.iter().copied().find(|turn| (turn - event).abs() < AT_TURN).unwrap_or(event)
         };
         let events = search.events.iter().map(|event| nearest(*event)).collect();
-        Some(Self { start, events, linear, touches: linear && slipped })
+        let touches = slipped && spring.departure() <= GRAZES;
+        Some(Self { start, events, linear: linear || touches, touches })
     }
 }
 
@@ -133,11 +140,53 @@ pub(super) fn step(
     to: f64,
     state: &mut [f64],
 ) -> ReturnMapJacobian {
+    step_with_force(part, u, [from, to], state).0
+}
+
+/// The same, with the force at its end.
+fn step_with_force(
+    part: &Part,
+    u: &Displacements<'_>,
+    angles: [f64; 2],
+    state: &mut [f64],
+) -> (ReturnMapJacobian, Vec<f64>) {
     let mut jacobian = ReturnMapJacobian::default();
-    let (before, after) = (u.at(part, from), u.at(part, to));
+    let [before, after] = angles.map(|theta| u.at(part, theta));
     let mut force = vec![0.0; after.len()];
     part.law.return_map(&before, &after, state, &mut force, Some(&mut jacobian));
-    jacobian
+    (jacobian, force)
+}
+
+/// The comparison of a law with the spring of its stiffness over a period: component by component the
+/// ranges of the force and of what it differs by.
+struct Spring<'a> {
+    part: &'a Part,
+    force: Vec<[f64; 2]>,
+    rest: Vec<[f64; 2]>,
+}
+
+impl<'a> Spring<'a> {
+    fn new(part: &'a Part) -> Self {
+        let none = vec![[f64::INFINITY, f64::NEG_INFINITY]; part.law.displacements()];
+        Self { part, force: none.clone(), rest: none }
+    }
+
+    fn follow(&mut self, displacement: &[f64], force: &[f64]) {
+        for (i, f) in force.iter().enumerate() {
+            let held =
+                displacement.iter().enumerate().map(|(j, u)| self.part.stiffness[(i, j)] * u);
+            let rest = f - held.sum::<f64>();
+            for (range, value) in [(&mut self.force[i], *f), (&mut self.rest[i], rest)] {
+                *range = [range[0].min(value), range[1].max(value)];
+            }
+        }
+    }
+
+    /// Largest departure, relative to the largest range of a force.
+    fn departure(&self) -> f64 {
+        let most = |ranges: &[[f64; 2]]| ranges.iter().map(|r| r[1] - r[0]).fold(0.0, f64::max);
+        most(&self.rest) / most(&self.force)
+    }
 }
 
 /// State at the start of the period, which repeats, and whether the part has slipped on the way to it.

@@ -52,18 +52,24 @@ pub struct Multipliers {
     pub values: Vec<c64>,
     /// What the last halving of the steps has changed of the largest modulus.
     pub error: f64,
+    /// Whether a contact touches its limit: they are those of disturbances that lead away from it.
+    pub touches: bool,
 }
 
 impl Multipliers {
-    fn largest(&self) -> f64 {
+    /// The largest modulus.
+    #[must_use]
+    pub fn largest(&self) -> f64 {
         self.values.first().map_or(0.0, |one| one.norm())
     }
 
-    /// Whether the motion is stable; nothing if the largest multiplier is nearer to 1 than its error.
+    /// Whether the motion is stable; nothing if the largest multiplier is nearer to 1 than its error, or
+    /// if nothing grows but contacts touch their limit: on its other side something may.
     #[must_use]
     pub fn stable(&self) -> Option<bool> {
         let away = self.largest() - 1.0;
-        (away.abs() > self.error.max(ROUNDING)).then_some(away < 0.0)
+        let known = away.abs() > self.error.max(ROUNDING) && (away > 0.0 || !self.touches);
+        known.then_some(away < 0.0)
     }
 }
 
@@ -140,8 +146,9 @@ impl PeriodMap {
 
     /// Multipliers of a motion of frequency ω [rad/s], given by its contact displacements; the steps are
     /// halved until the largest is known to `tolerance`, or without one until it is known on which side
-    /// of 1 it lies. Nothing where the contacts do not repeat what they do, where one has slipped until it
-    /// touches its limit, so that the map has no derivative, or where the steps are too many.
+    /// of 1 it lies. Nothing where the contacts do not repeat what they do, or where the steps are too
+    /// many. A contact that has slipped until it touches its limit is a spring: the map has another
+    /// derivative beyond it.
     #[must_use]
     pub fn multipliers(
         &self,
@@ -156,7 +163,8 @@ impl PeriodMap {
         };
         let paths: Option<Vec<PartPath>> =
             self.parts.iter().map(|part| PartPath::new(part, &u)).collect();
-        let paths = paths.filter(|paths| !paths.iter().any(|path| path.touches))?;
+        let paths = paths?;
+        let touches = paths.iter().any(|path| path.touches);
         let mut ends: Vec<f64> = paths
             .iter()
             .filter(|path| !path.linear)
@@ -199,7 +207,7 @@ impl PeriodMap {
                 None => (largest - 1.0).abs() > DECIDES * error && error < TRUSTED * largest,
             };
             if level >= 2 && (enough || error <= ROUNDING) {
-                return Some(Multipliers { values, error });
+                return Some(Multipliers { values, error, touches });
             }
             last = Some(largest);
             table = row;

@@ -33,6 +33,9 @@ pub(super) const FASTEST: f64 = 3e4;
 /// Closing error, relative to the motion, of an orbit.
 const CLOSED: f64 = 1e-10;
 
+/// Error of a multiplier.
+const ROUNDING: f64 = 1e-8;
+
 /// An exact periodic orbit.
 #[derive(Debug, Clone)]
 pub struct Orbit {
@@ -244,14 +247,17 @@ impl<'a> PeriodicOrbits<'a> {
                 })?),
             };
         self.profile.factorisations += shooting.matrices;
-        let mut orbit = self.survey(&mut shooting, &system, omega, &mut y);
+        let (mut orbit, touches) = self.survey(&mut shooting, &system, omega, &mut y);
         orbit.response.residual = closing;
         orbit.response.iterations = iterations;
         orbit.response.error_estimate = self.left_error(&shooting, &system, &left);
         if let Some((multipliers, neutral)) = known {
             orbit.neutral = neutral;
-            // Where a limit is touched they are those of one side alone.
-            if chosen != Chosen::Touching {
+            // Where a limit is touched they are those of disturbances away from it: what grows there
+            // grows.
+            let touches = touches || chosen == Chosen::Touching;
+            let grows = multipliers.get(neutral).is_some_and(|one| one.norm() > 1.0 + ROUNDING);
+            if grows || !touches {
                 orbit.multipliers = multipliers;
             }
         }
@@ -362,19 +368,21 @@ impl<'a> PeriodicOrbits<'a> {
         }
     }
 
-    /// Passes along the closed orbit and reads everything off it.
+    /// Passes along the closed orbit and reads everything off it; also whether a contact in a plane touches
+    /// its limit.
     fn survey(
         &mut self,
         shooting: &mut Shooting<'_>,
         system: &ModalSystem,
         omega: f64,
         y: &mut [f64],
-    ) -> Orbit {
+    ) -> (Orbit, bool) {
         let start = std::time::Instant::now();
         let highest = self.settings.harmonics;
         let span = std::f64::consts::TAU / omega * if self.half_wave { 0.5 } else { 1.0 };
         let mut state = shooting.state(y);
         let mut orbit = self.empty(omega, PointStatus::Converged);
+        let mut touches = false;
         for pass in 0..2 {
             orbit.state = state.to_dofs(system);
             orbit.start = Some(state.clone());
@@ -413,10 +421,11 @@ impl<'a> PeriodicOrbits<'a> {
             orbit.range = survey.range[..observed].to_vec();
             (orbit.work, orbit.viscous) = (survey.work, survey.viscous);
             orbit.events = std::mem::take(&mut survey.events);
+            touches = survey.touches();
             break;
         }
         self.profile.recovery += start.elapsed();
-        orbit
+        (orbit, touches)
     }
 
     /// Displacement error of the observed DOFs that the closing error leaves \[m\].

@@ -145,6 +145,7 @@ pub(super) fn judge_along(
         let map = map.assuming(family.residual());
         let Some(motion) = cycle.response.unknowns() else { continue };
         let found = map.multipliers(cycle.response.omega, motion, Some(MAPPED));
+        let found = found.filter(|found| !found.touches);
         let Some(mut values) = found.map(|found| found.values) else { continue };
         let off = |m: &c64| (m - c64::new(1.0, 0.0)).norm();
         let phase = (0..values.len()).min_by(|&i, &j| off(&values[i]).total_cmp(&off(&values[j])));

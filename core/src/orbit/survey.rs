@@ -10,6 +10,10 @@ use std::f64::consts::TAU;
 /// Quadrature nodes per segment beyond those that the highest harmonic needs: power series of an segment
 /// have few significant terms.
 const NODES: usize = 20;
+/// Distance from a limit, relative to it, at which a contact touches it, …
+const TOUCHES: f64 = 1e-7;
+/// … and share of a period that is but an instant: one of slip by rounding lasts as long as its root.
+const INSTANT: f64 = 1e-6;
 
 /// Sums over one pass along an orbit.
 pub(super) struct Survey<'a> {
@@ -23,6 +27,8 @@ pub(super) struct Survey<'a> {
     /// Rows that give the observed DOFs, and after them the contact displacements.
     shapes: Vec<Vec<f64>>,
     extremes: Extremes,
+    /// Least distance of each contact in a plane from its limit while it sticks, relative to it.
+    room: Vec<f64>,
     /// Lowest and highest value of each shape.
     pub(super) range: Vec<[f64; 2]>,
     pub(super) contacts: Vec<PointSummary>,
@@ -55,6 +61,7 @@ impl<'a> Survey<'a> {
             range: vec![[f64::INFINITY, f64::NEG_INFINITY]; shapes.len()],
             shapes,
             extremes: Extremes::default(),
+            room: vec![f64::INFINITY; system.planes().len()],
             contacts: vec![PointSummary::default(); system.points()],
             events: Vec::new(),
             work: 0.0,
@@ -69,6 +76,7 @@ impl<'a> Survey<'a> {
                 self.integrate(segment);
                 self.extremes.follow(segment, &self.shapes, &mut self.range);
                 self.follow_slip(segment);
+                self.follow_room(segment);
             }
             FlowEvent::Event { turn: Some((_, Turn::Undone | Turn::Forgotten(_))), .. } => {}
             FlowEvent::Event { event, .. } => {
@@ -158,6 +166,26 @@ impl<'a> Survey<'a> {
                 summary.slip_fraction += share;
             }
         }
+    }
+
+    fn follow_room(&mut self, segment: &FlowSegment<'_>) {
+        for (plane, room) in self.system.planes().iter().zip(&mut self.room) {
+            if segment.regime.points[plane.points[0]] == PointState::Stuck {
+                let own = self.extremes.least_room(self.system, segment, *plane);
+                *room = room.min(own);
+            }
+        }
+    }
+
+    /// Whether a contact in a plane but touches the limit that it never passes, and that varies.
+    pub(super) fn touches(&self) -> bool {
+        let planes = self.system.planes().iter().zip(&self.room);
+        planes.into_iter().any(|(plane, room)| {
+            let [point, _] = plane.points;
+            *room <= TOUCHES
+                && self.system.limit_slope(point).iter().any(|slope| *slope != 0.0)
+                && self.contacts[point].slip_fraction <= INSTANT
+        })
     }
 
     /// Completes half a period by its mirror image.
