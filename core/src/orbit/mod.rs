@@ -2,6 +2,7 @@
 //! harmonic is discarded, so that they judge the harmonic balance.
 
 mod curve_stability;
+mod cycle_begin;
 mod cycle_branch;
 mod cycles;
 mod drift;
