@@ -6,6 +6,7 @@ mod cycle_begin;
 mod cycle_branch;
 mod cycles;
 mod drift;
+mod later_begin;
 mod limit_cycle;
 mod linear_path;
 mod loop_memory;

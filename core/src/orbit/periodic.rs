@@ -18,7 +18,7 @@ use crate::solve::{newton, NewtonSettings, Outcome, System as _};
 use crate::timing::Profile;
 use crate::Error;
 use faer::c64;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// Harmonics of the balance that a cold start comes from.
@@ -26,9 +26,6 @@ const START_HARMONICS: usize = 9;
 /// Rounds of following the motion itself, and spans in the first: each round doubles them.
 const ROUNDS: usize = 9;
 const FIRST_SPANS: usize = 4;
-/// Begins of the span, as shares of it, from which an orbit is sought that none is found from 0: where a
-/// contact turns round, what it remembers jumps, and Newton's method fails about it.
-const BEGINS: [f64; 3] = [0.5, 0.25, 0.75];
 
 /// Highest rate of a motion over its frequency that is followed: ten thousand steps of the flow per
 /// period.
@@ -75,7 +72,7 @@ pub struct PeriodicOrbits<'a> {
     observe: &'a [usize],
     everywhere: Vec<usize>,
     half_wave: bool,
-    rotation: Option<Rotation>,
+    pub(super) rotation: Option<Rotation>,
     quadrature: Quadrature,
     progress: &'a Progress<'a>,
     pub(super) kept: Option<&'a Kept<Orbit>>,
@@ -290,7 +287,7 @@ impl<'a> PeriodicOrbits<'a> {
         self.system.has_normals() && !self.half_wave
     }
 
-    fn newton(&self) -> NewtonSettings {
+    pub(super) fn newton(&self) -> NewtonSettings {
         NewtonSettings { tolerance: 1e-13, max_iterations: self.settings.max_iterations }
     }
 
@@ -350,35 +347,9 @@ impl<'a> PeriodicOrbits<'a> {
         Some((y, iterations))
     }
 
-    /// Whether a span may begin later, and is another one then.
-    fn begins_later(&self) -> bool {
-        !self.system.microslips().is_empty() && self.rotation.is_none()
-    }
-
-    /// By Newton's method from harmonic balance over spans that begin later: unknowns at the time 0.
-    fn shoot_later(
-        &mut self,
-        shooting: &mut Shooting<'_>,
-        omega: f64,
-        iterations: &mut usize,
-    ) -> Option<Vec<f64>> {
-        let settings = self.newton();
-        BEGINS.into_iter().find_map(|share| {
-            let angle = share * if self.half_wave { PI } else { TAU };
-            shooting.begin_later(share);
-            let mut y = shooting.unknowns(&self.harmonic_start(omega, angle));
-            let report = newton(shooting, &mut y, settings);
-            *iterations += report.iterations;
-            let closed = report.outcome == Outcome::Converged;
-            let found = closed.then(|| shooting.begun_at_zero(&y)).flatten();
-            shooting.begin_later(0.0);
-            found
-        })
-    }
-
     /// The state of a harmonic balance of low order at an angle of the period; rest where it
     /// has none.
-    fn harmonic_start(&self, omega: f64, angle: f64) -> State {
+    pub(super) fn harmonic_start(&self, omega: f64, angle: f64) -> State {
         let rest = State::rest(&self.system);
         let forced = self.model.compliance().forced_harmonics();
         let highest = forced.last().copied().unwrap_or(1).max(START_HARMONICS);

@@ -32,7 +32,7 @@ def cycle_assumptions(
                 _end(model, settings, arrays, end, float(value), side)
                 for side, (end, value) in sides
             ),
-            not solution.interrupted and _missed(settings, arrays),
+            bool(settings.values) and not solution.interrupted and _missed(settings, arrays),
             arrays.limit is None and not (solution.interrupted or returned) and told("no-turn"),
             solution.jumps > 0 and told("branch-jumps", jumps=solution.jumps),
             settings.method == "newton" and _truncation(model, settings, arrays),
