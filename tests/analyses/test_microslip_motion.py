@@ -302,6 +302,91 @@ def test_cycles_that_grow_fast_are_closed_over_several_segments():
     assert (np.abs(exact.multipliers[:, 0]) > 1e20).all()
 
 
+@pytest.mark.parametrize("law", [iwan(slip_force=1.0), exponential(slip_force=1.0)])
+def test_branches_pass_where_a_reversal_meets_the_begin_of_the_orbit(law):
+    coupled = ss.Structure(
+        np.eye(2), [[1.02e4, -200.0], [-200.0, 1.02e4]], 0.2 * np.eye(2), ["a", "b"]
+    )
+    options = {"negative_damping": -np.diag([2.0, 4.0]), "mode": 0, "stability": False}
+    own = ss.Model(coupled, [law], [])
+    exact = ss.limit_cycles(own, method="exact", **options)
+    balance = ss.limit_cycles(own, harmonics=31, **options)
+    assert exact.limit.ratio == pytest.approx(balance.limit.ratio, rel=1e-5)
+    assert exact.limit.omega == pytest.approx(balance.limit.omega, rel=1e-6)
+    assert exact.branch[-1] == "slipping"
+    assert exact.amplitude("a")[-1] > 1e3 * exact.amplitude("a")[0]
+    # What is asked for between points that begin at different times is found, too.
+    wanted = np.linspace(1.2 * exact.ratio[-1], 0.99 * exact.limit.ratio, 15)
+    at = ss.limit_cycles(own, method="exact", ratio=list(wanted), **options)
+    assert at.ratio.size == 2 * wanted.size
+
+
+@pytest.mark.parametrize(
+    ("contacts", "negative"),
+    [
+        ([ss.Masing("a", stiffness=900.0, slip_force=0.2, backbone="exponential"), iwan("b")], 1.5),
+        (
+            [exponential("a", "b", slip_force=0.4), ss.Jenkins("b", stiffness=7e3, slip_force=0.4)],
+            2,
+        ),
+        ([iwan("a", chi=-0.97, beta=0.4), exponential("a", "b")], 2.5),
+    ],
+)
+def test_branches_begin_where_several_contacts_slip_little_by_little(contacts, negative):
+    options = {"negative_damping": -np.diag([negative, 1.0]), "mode": 0, "stability": False}
+    own = ss.Model(structure(damping=0.01), contacts, [])
+    branch = ss.limit_cycles(own, harmonics=7, **options)
+    assert branch.limit is not None
+    assert branch.ratio[-1] < branch.limit.ratio
+
+
+@pytest.mark.parametrize("method", ["newton", "exact"])
+def test_ratios_beyond_the_limit_are_said_to_have_no_cycle(method):
+    found = cycles(method, [iwan()], ratio=[1.0, 1e3])
+    assert found.ratio.tolist() == [1.0, 1.0]
+    assert "values-missed" in {d.code for d in found.diagnostics}
+    none = cycles(method, [iwan()], ratio=[1e3])
+    assert none.ratio.size == 0
+    assert "ratio = 1000" in next(d.text for d in none.diagnostics if d.code == "values-missed")
+
+
+def spring_chain(mass, to_ground, between, damping):
+    stiffness = np.diag(to_ground).astype(float)
+    for i, k in enumerate(between):
+        stiffness[i : i + 2, i : i + 2] += k * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    return ss.Structure(
+        np.diag(mass), stiffness, ss.ModalDamping(damping), list("abcd")[: len(mass)]
+    )
+
+
+def test_orbits_are_found_whose_reversals_lie_at_the_begin_of_the_period():
+    # The contacts turn round 0.02 and 0.2 before the begin; what they remember jumps there. The
+    # slider of the second system is pushed to its limit on the way, and has to come back.
+    first = ss.Model(
+        spring_chain([1.837, 0.608, 1.16], [2200, 5421, 4304], [5983, 4470], 0.02),
+        [ss.Iwan("c", stiffness=1040.0, slip_force=0.257, chi=-0.0045, beta=2.36)],
+        [ss.Force("a", 4.877), ss.Force("a", 1.377, harmonic=3), ss.Force("c", 0.595, harmonic=0)],
+    )
+    joint = ss.Masing(
+        "c", "d", stiffness=895.3, slip_force=6.074, backbone="shear-layer", shear_lag=1.79
+    )
+    second = ss.Model(
+        spring_chain(
+            [1.401, 1.435, 0.604, 1.365], [2724, 5081, 7190, 2310], [5793, 7512, 4114], 0.0125
+        ),
+        [joint, ss.Jenkins("d", stiffness=9675.0, slip_force=0.21977)],
+        [ss.Force("a", 7.262)],
+    )
+    for own, omega, residual in ((first, 137.4, "centred"), (second, 207.77, 0.734)):
+        exact = ss.exact_response(own, [omega], residual=residual)
+        balance = ss.forced_response(own, [omega], 63, residual=residual)
+        assert exact.converged.all()
+        found, expected = (own.coefficients("c")[:, :6] for own in (exact, balance))
+        assert np.abs(found - expected).max() < 1e-6 * np.abs(expected).max()
+        again = ss.transient(own, omega, 2, start=exact.state(0))
+        assert again.change.max() < 1e-9
+
+
 @pytest.mark.parametrize("residual", [0.3, -1.0, 50.0])
 @pytest.mark.parametrize("law", [iwan(chi=-0.3), exponential()])
 def test_exact_orbits_hold_what_they_are_given(law, residual):

@@ -9,10 +9,10 @@ use super::limit_cycle::CycleBalance;
 use crate::contact::{ContactLaw, Describing};
 use crate::fourier::SampleTable;
 use crate::model::FlutterModel;
-use crate::solve::at_parameter;
+use crate::solve::{across, at_parameter};
 use crate::structure::StuckMode;
 use crate::Error;
-use faer::Mat;
+use faer::{c64, Mat};
 use std::sync::Arc;
 
 /// Newton iterations for the first point.
@@ -23,6 +23,10 @@ const NEARER: [f64; 7] = [1.0, 0.5, 0.2, 0.05, 0.01, 1e-3, 1e-4];
 /// Doublings of the excess over the onset up to which friction is asked to balance a guess: laws that
 /// always slip have their onset at next to no force.
 const FURTHER: i32 = 50;
+/// Motion, relative to that of the onset, of a contact that always slips and of which nothing is to be seen.
+const HARDLY: f64 = 1e-3;
+/// Halvings of the excess that balances the work.
+const HALVINGS: usize = 50;
 /// Contact displacement, relative to the largest of all modes, that counts as none.
 const STILL: f64 = 1e-9;
 /// A frequency, relative to the highest natural one, at which nothing resonates.
@@ -42,7 +46,7 @@ fn springs(
     own: &StuckMode,
 ) -> Mat<f64> {
     let force = |i: usize| {
-        (0..limits.len()).map(|j| own.contact[j] * stiffness[(i, j)]).sum::<faer::c64>().norm()
+        (0..limits.len()).map(|j| own.contact[j] * stiffness[(i, j)]).sum::<c64>().norm()
     };
     let slips = (0..limits.len()).filter(|&i| limits[i].is_finite() && force(i) > 0.0);
     let amplitude = slips.map(|i| limits[i] / force(i)).fold(f64::INFINITY, f64::min);
@@ -75,8 +79,8 @@ pub struct Onset {
     pub amplitude: f64,
     /// That contact point; about a state at rest, the one that bears most.
     pub point: usize,
-    /// Its law, if that has a describing function.
-    law: Option<Arc<dyn ContactLaw>>,
+    /// Of each contact point its law, if that has a describing function.
+    laws: Vec<Option<Arc<dyn ContactLaw>>>,
     /// Its force there \[N\].
     pub limit: f64,
     /// How many times further that contact slips as a whole: 1 unless it slips little by little.
@@ -132,8 +136,7 @@ impl Onset {
             return Err(Error::value("mode", mode as f64, &remedy));
         };
         let force = |i: usize| -> f64 {
-            let sum: faer::c64 =
-                (0..own.contact.len()).map(|j| own.contact[j] * stiffness[(i, j)]).sum();
+            let sum: c64 = (0..own.contact.len()).map(|j| own.contact[j] * stiffness[(i, j)]).sum();
             sum.norm()
         };
         let moved = (0..limits.len()).filter(|&i| own.contact[i].norm() > STILL * largest);
@@ -178,18 +181,20 @@ impl Onset {
             .filter(|dof| !restrained(*dof) && size(dof) > 0.01 * size(&most))
             .max_by(moves)
             .unwrap_or(most);
-        let mut contacts = laws.iter().zip(model.points());
-        let law = contacts.find(|(_, range)| range.contains(&point)).map(|(law, _)| law);
         let gross = laws.iter().flat_map(|law| law.limits()).nth(point).filter(|f| f.is_finite());
         let whole = gross.filter(|_| rest.is_none()).map_or(1.0, |gross| gross / limits[point]);
-        let law = law.filter(|law| law.describing(1.0).is_some());
-        let law = law.map(|law| Arc::from(law.with_scaled_forces(1.0)));
+        let describing = laws.iter().flat_map(|law| {
+            let own = law.describing(1.0).map(|_| Arc::from(law.with_scaled_forces(1.0)));
+            std::iter::repeat_n(own, law.displacements())
+        });
+        // What never slips is a spring of the mode already.
+        let describing = describing.zip(&limits).map(|(law, f)| law.filter(|_| f.is_finite()));
         Ok(Self {
             mode: own.clone(),
             ratio,
             amplitude,
             point,
-            law,
+            laws: describing.collect(),
             limit: if rest.is_some() { amplitude * force(point) } else { limits[point] },
             whole,
             dof,
@@ -210,6 +215,8 @@ impl Onset {
             let wanted = [self.amplitude, ratio];
             return rest.first_point(family, table, &self.mode, wanted, interrupted);
         }
+        // Where friction takes more off the least motion, the stuck mode has nothing to begin with.
+        let ratio = ratio.max(self.ratio_at(1.0));
         for share in NEARER {
             for factor in [1.0, 0.7, 1.5, 0.3, 3.0] {
                 let ratio = self.ratio + share * (ratio - self.ratio);
@@ -225,35 +232,71 @@ impl Onset {
                 let slots = table.harmonics().slots();
                 let moved = table.harmonics().fundamental(&z[self.point * slots..][..slots]);
                 let expected = self.amplitude * self.mode.contact[self.point].norm();
-                let most = 1.5 * (1.0 + excess).max(2.0) * expected;
-                if (0.7..1.3).contains(&near) && moved > 0.5 * expected && moved < most {
+                // Motions of a contact that slips little by little may grow by decades within a percent
+                // of r: there the guess tells no more than that it hardly slips.
+                let (least, most) = if self.whole > 1.0 {
+                    (HARDLY * expected, (0.1 * self.whole).max(2.0 * (1.0 + excess)) * expected)
+                } else {
+                    (0.5 * expected, 1.5 * (1.0 + excess).max(2.0) * expected)
+                };
+                if (0.7..1.3).contains(&near) && moved > least && moved < most {
                     return Some(z);
                 }
             }
         }
-        None
+        // Such motions are determined by their size rather than by r.
+        let least = if self.whole > 1.0 { self.ratio_at(1.0) } else { return None };
+        let guess = self.motion(table, 1.0, least);
+        let mut before = guess.clone();
+        let moved = guess.len() - 2;
+        before[..moved].iter_mut().for_each(|u| *u *= 0.9);
+        let mut curve = CycleBalance::new(family, table, &guess, interrupted);
+        across(&mut curve, &before, &guess, 1.0).filter(|z| z[z.len() - 1] > 0.0)
+    }
+
+    /// What slip takes off the stiffness of all contacts in the stuck mode beyond the onset of slip, by
+    /// their first harmonics.
+    fn softening(&self, excess: f64) -> c64 {
+        let stroke = |point: usize| self.mode.contact[point].norm();
+        let size = |point: usize| (1.0 + excess) * stroke(point) * self.amplitude;
+        let known = self.laws.iter().enumerate().filter_map(|(point, law)| {
+            let law = law.as_ref().filter(|_| size(point) > 0.0)?;
+            let own = law.describing(0.0)?.stiffness - law.describing(size(point))?.stiffness;
+            Some(stroke(point).powi(2) * own)
+        });
+        let known = known.sum::<c64>();
+        if self.laws[self.point].is_some() {
+            return known;
+        }
+        let stiffness = self.limit / (stroke(self.point) * self.amplitude);
+        let own = Describing::of_jenkins(stiffness, self.limit, size(self.point)).stiffness;
+        known + stroke(self.point).powi(2) * (stiffness - own)
+    }
+
+    /// Ratio r at which friction balances the stuck mode so far beyond the onset of slip, if it always
+    /// slips a little; otherwise that of the onset.
+    fn ratio_at(&self, excess: f64) -> f64 {
+        if self.whole > 1.0 {
+            let lost = self.softening(excess).im / self.mode.omega;
+            (lost - self.mode.damping) / self.mode.negative
+        } else {
+            self.ratio
+        }
     }
 
     /// The stuck mode beyond the onset of slip by what makes friction dissipate the work of the
-    /// negative damping, by the first harmonic of one slipping contact, and by which share of the
+    /// negative damping, by the first harmonic of all contacts, and by which share of the
     /// amplitude at the onset it lies beyond; nothing if it cannot.
     fn guess(&self, table: &SampleTable, ratio: f64, factor: f64) -> Option<(Vec<f64>, f64)> {
-        let (harmonics, mode) = (table.harmonics(), &self.mode);
+        let mode = &self.mode;
         let damping = mode.damping + ratio * mode.negative;
-        let stroke = mode.contact[self.point].norm();
-        let stiffness = self.limit / (stroke * self.amplitude);
-        let force = |excess: f64| {
-            let size = (1.0 + excess) * stroke * self.amplitude;
-            let own = self.law.as_ref().and_then(|law| law.describing(size));
-            own.unwrap_or_else(|| Describing::of_jenkins(stiffness, self.limit, size)).stiffness
-        };
         // The dissipation of one element grows with the excess up to twice the amplitude at its
         // onset; that of several ones further.
-        let left = |excess: f64| mode.omega * damping + stroke * stroke * force(excess).im;
+        let left = |excess: f64| mode.omega * damping - self.softening(excess).im;
         let mut reached = (0..FURTHER).map(|doubled| 2f64.powi(doubled));
         let mut high = reached.find(|excess| left(*excess) >= 0.0)?;
         let mut low = 0.0;
-        for _ in 0..100 {
+        for _ in 0..HALVINGS {
             let middle = 0.5 * (low + high);
             if left(middle) < 0.0 {
                 low = middle;
@@ -261,9 +304,13 @@ impl Onset {
                 high = middle;
             }
         }
-        let excess = factor * high;
-        let softening = stroke * stroke * (stiffness - force(excess).re);
-        let omega = (mode.omega * mode.omega - softening).max(0.0).sqrt();
+        Some((self.motion(table, factor * high, ratio), high))
+    }
+
+    /// The stuck mode so far beyond the onset of slip, at a ratio r: unknowns of [`CycleBalance`].
+    fn motion(&self, table: &SampleTable, excess: f64, ratio: f64) -> Vec<f64> {
+        let (harmonics, mode) = (table.harmonics(), &self.mode);
+        let omega = (mode.omega * mode.omega - self.softening(excess).re).max(0.0).sqrt();
         let q = self.amplitude * (1.0 + excess);
         let slots = harmonics.slots();
         let mut z = vec![0.0; mode.contact.len() * slots];
@@ -274,6 +321,6 @@ impl Onset {
             }
         }
         z.extend([omega, ratio]);
-        Some((z, high))
+        z
     }
 }

@@ -294,7 +294,8 @@ impl Finder<'_> {
             let lowest = self.lowest_ratio().min(start[start.len() - 1]);
             let bounds =
                 Bounds { range: (lowest, settings.range.1), most: settings.most, ends: &endless };
-            let sign = if self.family.is_symmetric() { 1.0 } else { rising(curve, &start, moved) };
+            let sudden = self.family.is_symmetric() && self.onset.whole <= 1.0;
+            let sign = if sudden { 1.0 } else { rising(curve, &start, moved) };
             let mut branch = Branch::continue_branch(curve, start, sign, steps, &bounds);
             let limit = extreme(&branch, 1.0);
             let ends = [End::Range, branch.end];

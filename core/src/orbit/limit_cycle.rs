@@ -13,7 +13,7 @@ use super::segments::{
     follow, halved, product_eigenvalues, segmentation, Member, Segment, Segmentation,
 };
 use super::shooting::Shooting;
-use super::start::start_of;
+use super::start::{later, start_of};
 use crate::balance::Point;
 use crate::model::FlutterModel;
 use crate::motion::{ContactState, ModalSystem, State, Transition};
@@ -103,19 +103,11 @@ impl<'a> CycleOrbits<'a> {
         let coordinates = Transition::new(&member.system, reference);
         let half = self.family.is_symmetric();
         let shooting = Shooting::within(&member.system, point.omega, half, None, coordinates);
-        let orders = point.harmonics + 1;
         let mut z = Vec::with_capacity(segments * self.size() + 2);
         for number in 0..segments {
             let angle = 0.25 * PI + self.span() * number as f64 / segments as f64;
-            let mut later = point.clone();
-            for series in [&mut later.displacement, &mut later.contact_displacement] {
-                for row in series.chunks_exact_mut(orders) {
-                    for (order, x) in row.iter_mut().enumerate() {
-                        *x *= c64::from_polar(1.0, angle * order as f64);
-                    }
-                }
-            }
             let residual = self.family.residual();
+            let later = later(point, angle);
             let state = start_of(member.model(), &member.system, residual, &later, half);
             z.extend(shooting.unknowns(&state));
         }
@@ -127,9 +119,10 @@ impl<'a> CycleOrbits<'a> {
     pub(super) fn start(&self, point: &Point, value: f64, reference: f64) -> Option<Vec<f64>> {
         let mut z = self.unknowns(point, value, reference, 1).ok()?;
         loop {
-            let suitable = OrbitCurve::new(self, reference, &z, &|| false).suitable_unknowns(&z);
+            let mut curve = OrbitCurve::new(self, reference, &z, &|| false);
+            let suitable = curve.suitable_unknowns(&z);
             if suitable <= z.len() {
-                return Some(z);
+                return curve.best_begin(&z).map_or(Some(z.clone()), |by| curve.begun(&z, by));
             }
             z = self.unknowns(point, value, reference, (suitable - 2) / self.size()).ok()?;
         }
@@ -200,6 +193,11 @@ impl<'a> OrbitCurve<'a> {
     /// Whether the closing condition is that of half a period, mirrored.
     pub(super) fn is_symmetric(&self) -> bool {
         self.orbits.family.is_symmetric()
+    }
+
+    /// Unknowns of one state, and how many of them say what contacts without sliders remember.
+    pub(super) fn state_size(&self) -> [usize; 2] {
+        [self.orbits.size(), LoopMemory::places(&self.orbits.system)]
     }
 
     /// Has `visit` look at the closing condition of a point.
@@ -421,6 +419,21 @@ impl Curve for OrbitCurve<'_> {
         }
         y.extend(last);
         Some(y)
+    }
+
+    fn better_begin(&mut self, z: &[f64]) -> Option<f64> {
+        self.best_begin(z)
+    }
+
+    fn begin_later(&mut self, z: &[f64], by: f64) -> Option<Vec<f64>> {
+        self.begun(z, by)
+    }
+
+    fn matched(&mut self, a: &[f64], b: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
+        let unknowns = a.len().max(b.len());
+        let b = self.resample(b, unknowns)?;
+        let a = self.resample(a, unknowns)?;
+        Some((self.in_step(&a, &b)?, b))
     }
 
     fn interrupted(&self) -> bool {

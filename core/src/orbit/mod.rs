@@ -2,9 +2,11 @@
 //! harmonic is discarded, so that they judge the harmonic balance.
 
 mod curve_stability;
+mod cycle_begin;
 mod cycle_branch;
 mod cycles;
 mod drift;
+mod later_begin;
 mod limit_cycle;
 mod linear_path;
 mod loop_memory;

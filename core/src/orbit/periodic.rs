@@ -6,7 +6,7 @@ use super::rotation::Rotation;
 use super::settings::OrbitSettings;
 use super::shooting::{Shooting, STEPS};
 use super::sliders::{choose, Assumption, Chosen};
-use super::start::start_of;
+use super::start::{later, start_of};
 use super::survey::Survey;
 use crate::balance::{
     with_history, ForcedBalance, HarmonicChoice, Kept, Point, PointStatus, Progress, Settings,
@@ -18,6 +18,7 @@ use crate::solve::{newton, NewtonSettings, Outcome, System as _};
 use crate::timing::Profile;
 use crate::Error;
 use faer::c64;
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// Harmonics of the balance that a cold start comes from.
@@ -29,6 +30,9 @@ const FIRST_SPANS: usize = 4;
 /// Highest rate of a motion over its frequency that is followed: ten thousand steps of the flow per
 /// period.
 pub(super) const FASTEST: f64 = 3e4;
+
+/// Friction work, relative to that of the limit over the range of the motion, that is none.
+const TOUCHED: f64 = 1e-9;
 
 /// Closing error, relative to the motion, of an orbit.
 const CLOSED: f64 = 1e-10;
@@ -71,7 +75,7 @@ pub struct PeriodicOrbits<'a> {
     observe: &'a [usize],
     everywhere: Vec<usize>,
     half_wave: bool,
-    rotation: Option<Rotation>,
+    pub(super) rotation: Option<Rotation>,
     quadrature: Quadrature,
     progress: &'a Progress<'a>,
     pub(super) kept: Option<&'a Kept<Orbit>>,
@@ -289,7 +293,7 @@ impl<'a> PeriodicOrbits<'a> {
         self.system.has_normals() && !self.half_wave
     }
 
-    fn newton(&self) -> NewtonSettings {
+    pub(super) fn newton(&self) -> NewtonSettings {
         NewtonSettings { tolerance: 1e-13, max_iterations: self.settings.max_iterations }
     }
 
@@ -305,18 +309,27 @@ impl<'a> PeriodicOrbits<'a> {
         let mut iterations = 0;
         let mut y = match neighbour {
             Some(state) => shooting.unknowns(state),
-            None => shooting.unknowns(&self.harmonic_start(omega)),
+            None => shooting.unknowns(&self.harmonic_start(omega, 0.0)),
         };
         // Any other start has other sliders.
-        let attempts = if self.sliders.is_empty() { 2 + ROUNDS } else { 1 };
+        let attempts = if self.sliders.is_empty() { 3 + ROUNDS } else { 1 };
         for attempt in 0..attempts {
             match attempt {
                 0 => {}
                 1 if neighbour.is_some() => {
-                    y = shooting.unknowns(&self.harmonic_start(omega));
+                    y = shooting.unknowns(&self.harmonic_start(omega, 0.0));
                 }
                 1 => continue,
+                2 if self.begins_later() => {
+                    match self.shoot_later(shooting, omega, &mut iterations) {
+                        Some(begun) => y = begun,
+                        None if shooting.interrupted() => return None,
+                        None => continue,
+                    }
+                }
+                2 => continue,
                 round => {
+                    let round = round - 1;
                     self.profile.homotopies += usize::from(round == 2);
                     if !shooting.settle(&mut y, FIRST_SPANS << (round - 2)) {
                         if shooting.interrupted() {
@@ -340,9 +353,9 @@ impl<'a> PeriodicOrbits<'a> {
         Some((y, iterations))
     }
 
-    /// The state of a harmonic balance of low order at the start of the period; rest where it
+    /// The state of a harmonic balance of low order at an angle of the period; rest where it
     /// has none.
-    fn harmonic_start(&self, omega: f64) -> State {
+    pub(super) fn harmonic_start(&self, omega: f64, angle: f64) -> State {
         let rest = State::rest(&self.system);
         let forced = self.model.compliance().forced_harmonics();
         let highest = forced.last().copied().unwrap_or(1).max(START_HARMONICS);
@@ -361,7 +374,7 @@ impl<'a> PeriodicOrbits<'a> {
                 self.with_history.as_ref().unwrap_or(self.model),
                 &self.system,
                 self.settings.residual,
-                &point,
+                &later(&point, angle),
                 balance.half_wave(),
             ),
             _ => rest,
@@ -379,7 +392,7 @@ impl<'a> PeriodicOrbits<'a> {
     ) -> (Orbit, bool) {
         let start = std::time::Instant::now();
         let highest = self.settings.harmonics;
-        let span = std::f64::consts::TAU / omega * if self.half_wave { 0.5 } else { 1.0 };
+        let span = TAU / omega * if self.half_wave { 0.5 } else { 1.0 };
         let mut state = shooting.state(y);
         let mut orbit = self.empty(omega, PointStatus::Converged);
         let mut touches = false;
@@ -401,8 +414,14 @@ impl<'a> PeriodicOrbits<'a> {
             });
             survey.finish();
             let observed = self.observe.len();
+            // One that Newton's method has pushed to its limit touches it for an instant.
+            let still = |i: usize| {
+                let (own, limit) = (&survey.contacts[i], system.limits()[i]);
+                let [low, high] = survey.range[observed + i];
+                own.slip_fraction == 0.0 || own.dissipation.abs() <= TOUCHED * limit * (high - low)
+            };
             let neutral: Vec<usize> = (0..system.points())
-                .filter(|&i| survey.contacts[i].slip_fraction == 0.0 && system.limits()[i] > 0.0)
+                .filter(|&i| still(i) && system.limits()[i] > 0.0)
                 // Where these begin to load says what they hold.
                 .filter(|&i| !system.is_microslip(i))
                 .collect();

@@ -36,6 +36,8 @@ pub(super) struct Shooting<'a> {
     rotation: Option<(Rotation, Mat<f64>)>,
     period: f64,
     span: f64,
+    /// When the span begins \[s\].
+    begin: f64,
     interrupted: Option<&'a dyn Fn() -> bool>,
     /// Of the last evaluation: phases, what held the forces at the start, points that have slipped.
     phases: Vec<LinearPhase>,
@@ -87,6 +89,7 @@ impl<'a> Shooting<'a> {
             rotation: None,
             period,
             span: if half_wave { 0.5 * period } else { period },
+            begin: 0.0,
             interrupted,
             phases: Vec::new(),
             held: Vec::new(),
@@ -116,6 +119,23 @@ impl<'a> Shooting<'a> {
         let (mut state, _) = self.coordinates.state(y);
         self.memory.recall(&mut state, self.coordinates.system(), &y[self.coordinates.size()..]);
         state
+    }
+
+    /// Has the span begin a share of it later.
+    pub(super) fn begin_later(&mut self, share: f64) {
+        self.begin = share * self.span;
+    }
+
+    /// The unknowns of an orbit that is closed, with its span beginning at 0 again.
+    pub(super) fn begun_at_zero(&mut self, y: &[f64]) -> Option<Vec<f64>> {
+        let share = 1.0 - self.begin / self.span;
+        let mut y = self.later(y, share, &mut |_, _| {})?;
+        if self.half_wave {
+            y.iter_mut().for_each(|y| *y = -*y);
+        }
+        self.begin = 0.0;
+        // What is remembered is that of the period before.
+        self.image(&y)
     }
 
     /// Grants the flow another number of steps.
@@ -186,7 +206,8 @@ impl<'a> Shooting<'a> {
         self.phases.clear();
         self.derivative = None;
         let (phases, memory) = (&mut self.phases, &mut self.memory);
-        let run = self.flow.run(&mut state, self.span, &mut |passage| {
+        state.time = self.begin;
+        let run = self.flow.run(&mut state, self.begin + self.span, &mut |passage| {
             LinearPhase::record(phases, system, &passage);
             memory.follow(&passage);
         });
@@ -220,6 +241,28 @@ impl<'a> Shooting<'a> {
         observe: &mut dyn FnMut(FlowEvent<'_>),
     ) -> bool {
         self.flow.run(state, self.period, observe).is_ok()
+    }
+
+    /// The unknowns a share of the span behind a start, as the flow leads there; `observe` hears of the
+    /// share of the span at each passage.
+    pub(super) fn later(
+        &mut self,
+        y: &[f64],
+        share: f64,
+        observe: &mut dyn FnMut(f64, &FlowEvent<'_>),
+    ) -> Option<Vec<f64>> {
+        let (mut state, span) = (self.state(y), self.span);
+        state.time = self.begin;
+        let until = self.begin + share * span;
+        let run = self.flow.run(&mut state, until, &mut |passage| {
+            let time = match &passage {
+                FlowEvent::Segment(segment) => segment.start,
+                FlowEvent::Event { event, .. } => event.time,
+            };
+            observe(time / span, &passage);
+        });
+        run.ok()?;
+        Some(self.unknowns(&state))
     }
 
     /// Follows the motion itself over some spans: passive systems settle by themselves.

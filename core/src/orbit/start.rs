@@ -7,6 +7,19 @@ use crate::model::Model;
 use crate::motion::{ModalSystem, State};
 use faer::c64;
 
+/// A periodic motion that begins at a later angle of its period.
+pub(super) fn later(point: &Point, angle: f64) -> Point {
+    let (orders, mut later) = (point.harmonics + 1, point.clone());
+    for series in [&mut later.displacement, &mut later.contact_displacement] {
+        for row in series.chunks_exact_mut(orders) {
+            for (order, x) in row.iter_mut().enumerate() {
+                *x *= c64::from_polar(1.0, angle * order as f64);
+            }
+        }
+    }
+    later
+}
+
 /// State at the start of the period of a harmonic balance of all DOFs.
 pub(super) fn start_of(
     model: &Model,

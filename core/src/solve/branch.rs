@@ -107,6 +107,12 @@ impl Branch {
                 walk.restart(curve, &known, &point);
                 (*before, *last) = (known, point);
             }
+            if let Some(by) = curve.better_begin(&walk.point) {
+                let [.., before, last] = &mut branch.points[..] else { break End::Stalled };
+                let Some((known, point)) = begun_later(curve, [before, last], by) else { continue };
+                walk.restart(curve, &known, &point);
+                (*before, *last) = (known, point);
+            }
         };
         branch.iterations += walk.iterations;
         branch.jumps = walk.jumps;
@@ -264,15 +270,26 @@ impl Branch {
     }
 }
 
-/// A point in as many unknowns as the equations need there.
+/// A point in as many unknowns as the equations need there, begun where they are smooth.
 fn resampled(curve: &mut dyn Curve, mut point: Vec<f64>) -> Vec<f64> {
     loop {
         let suitable = curve.suitable_unknowns(&point);
         match curve.resample(&point, suitable) {
             Some(more) if suitable > point.len() => point = more,
-            _ => return point,
+            _ => break,
         }
     }
+    let later = curve.better_begin(&point).and_then(|by| curve.begin_later(&point, by));
+    later.unwrap_or(point)
+}
+
+/// Two points with their motions begun later.
+fn begun_later(
+    curve: &mut dyn Curve,
+    [before, last]: [&[f64]; 2],
+    by: f64,
+) -> Option<(Vec<f64>, Vec<f64>)> {
+    Some((curve.begin_later(before, by)?, curve.begin_later(last, by)?))
 }
 
 /// The point with the parameter at `value` between two others.

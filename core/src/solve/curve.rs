@@ -57,7 +57,18 @@ pub trait Curve {
         (z.len() == unknowns).then(|| z.to_vec())
     }
 
-    /// Two points in the same unknowns, as many as the larger number of them.
+    /// How much later the motion of a point had better begin, where its begin comes close to an instant
+    /// across which the unknowns jump.
+    fn better_begin(&mut self, _z: &[f64]) -> Option<f64> {
+        None
+    }
+
+    /// The same point with its motion begun later.
+    fn begin_later(&mut self, z: &[f64], _by: f64) -> Option<Vec<f64>> {
+        Some(z.to_vec())
+    }
+
+    /// Two points in the same unknowns, as many as the larger number of them, and in step.
     fn matched(&mut self, a: &[f64], b: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
         let unknowns = a.len().max(b.len());
         Some((self.resample(a, unknowns)?, self.resample(b, unknowns)?))

@@ -32,11 +32,23 @@ def cycle_assumptions(
                 _end(model, settings, arrays, end, float(value), side)
                 for side, (end, value) in sides
             ),
+            bool(settings.values) and not solution.interrupted and _missed(settings, arrays),
             arrays.limit is None and not (solution.interrupted or returned) and told("no-turn"),
             solution.jumps > 0 and told("branch-jumps", jumps=solution.jumps),
             settings.method == "newton" and _truncation(model, settings, arrays),
         )
     )
+
+
+def _missed(settings: CycleSettings, arrays: CycleArrays) -> Diagnostic | None:
+    """Say at which of the values asked for there is no limit cycle."""
+    found = arrays.value
+    missed = [value for value in settings.values or () if not np.isclose(found, value).any()]
+    if not missed:
+        return None
+    shown = ", ".join(f"{value:.6g}" for value in missed[:5])
+    more = ", ..." if len(missed) > 5 else ""
+    return told("values-missed", points=len(missed), _followed=settings.followed, _at=shown + more)
 
 
 def _end(
@@ -73,8 +85,9 @@ def _stability(
 
 
 def _truncation(model: Model, settings: CycleSettings, arrays: CycleArrays) -> Diagnostic | None:
-    size = np.abs(arrays.displacement[:, 1:]).max(axis=1)
-    share = arrays.error_estimate / np.maximum(size, 0.02 * size.max(axis=1, keepdims=True))
+    size = np.abs(arrays.displacement[:, 1:]).max(axis=1, initial=0.0)
+    largest = size.max(axis=1, keepdims=True, initial=0.0)
+    share = arrays.error_estimate / np.maximum(size, 0.02 * largest)
     worst = float(np.where(np.isnan(share), 0.0, share).max(initial=0.0))
     if not worst > settings.tolerance:
         return None

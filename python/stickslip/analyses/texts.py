@@ -245,6 +245,8 @@ TEXTS = {
     "continuation was found. {_remedy}",
     "points-limit": "The branch ends after {points} points; raise max_points.",
     "unbounded-branch": "The {side} side grows without bound towards {_followed} = {value:.6g}.",
+    "values-missed": "The branch has no limit cycle at {_followed} = {_at}; without a list of "
+    "values the whole branch is followed, which shows how far it reaches.",
     "no-turn": "No turn: the branch does not turn in the range, and has one side alone.",
     "no-limit": "{_name} = {value:.6g}: {_cause}",
     "branch-jumps": "{jumps} places were stepped over, at corners or between folds close to each "
