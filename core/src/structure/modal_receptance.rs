@@ -184,9 +184,8 @@ impl Compliance for ModalCompliance {
     fn effort(&self, observed: usize) -> [f64; 2] {
         let (modes, contacts) = (self.right.ncols() as f64, self.contacts() as f64);
         // A factorisation and as many solutions as there are contacts.
-        let restraint =
-            if self.restraint.is_some() { 300.0 + 10.0 * contacts.powi(3) } else { 0.0 };
-        let displacement = 200.0 + modes * (20.0 + 1.5 * (contacts + observed as f64));
-        [300.0 + modes * (20.0 + 1.5 * contacts * contacts) + restraint, displacement]
+        let restraint = if self.restraint.is_some() { contacts.powi(3) } else { 0.0 };
+        let displacement = modes * (20.0 + 1.5 * (contacts + observed as f64));
+        [modes * (20.0 + 1.5 * contacts * contacts) + restraint, displacement]
     }
 }
