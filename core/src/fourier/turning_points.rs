@@ -63,7 +63,9 @@ impl SampleTable {
         let quarter =
             stride * (SAMPLES_PER_HARMONIC / COARSER * harmonics.highest().max(4)).div_ceil(4);
         // The angles of all orders are multiples of the same step.
-        let unit = circle(quarter);
+        let count = 4 * quarter;
+        let step = std::f64::consts::TAU / count as f64;
+        let unit: Vec<_> = (0..count).map(|i| (i as f64 * step).sin_cos()).collect();
         let row = padded(quarter + 1);
         let size = row * harmonics.oscillating().len();
         let (mut cos, mut sin) = (vec![0.0; size], vec![0.0; size]);
@@ -71,11 +73,8 @@ impl SampleTable {
         for (&order, (cos, sin)) in harmonics.oscillating().iter().zip(rows) {
             let mut at = 0;
             for (cos, sin) in cos.iter_mut().zip(sin) {
-                [*cos, *sin] = unit[at];
-                at += order;
-                if at >= unit.len() {
-                    at -= unit.len();
-                }
+                (*sin, *cos) = unit[at];
+                at = (at + order) % count;
             }
         }
         Self { harmonics, quarter, stride, cos, sin, instants: Instants::default() }
@@ -328,24 +327,6 @@ impl SampleTable {
         }
         TurningPoint { theta, value: jet[0] }
     }
-}
-
-/// Cosines and sines at the multiples of a `quarter`-th of a right angle, once around: those of an
-/// eighth, reflected.
-fn circle(quarter: usize) -> Vec<[f64; 2]> {
-    let step = std::f64::consts::FRAC_PI_2 / quarter as f64;
-    let mut unit = vec![[1.0, 0.0]; 4 * quarter];
-    for i in 0..=quarter / 2 {
-        let (s, c) = (i as f64 * step).sin_cos();
-        (unit[i], unit[quarter - i]) = ([c, s], [s, c]);
-    }
-    for i in 0..quarter {
-        let [c, s] = unit[i];
-        for (turn, rotated) in [[-s, c], [-c, -s], [s, -c]].into_iter().enumerate() {
-            unit[(turn + 1) * quarter + i] = rotated;
-        }
-    }
-    unit
 }
 
 /// Whether the second of three values of equal sign is closest to zero.
