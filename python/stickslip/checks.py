@@ -108,13 +108,14 @@ def listed(names: Sequence[str]) -> str:
     return ", ".join(map(brief, names[:_SHOWN])) + more
 
 
-def text(value: object, entry: str) -> str:
-    """Return a name that is text, not blank, and that a file can hold on a line."""
+def text(value: object, entry: str, lines: bool = False) -> str:
+    """Return a name that is text, not blank, and that a file can hold, on a line or on several."""
     if not isinstance(value, str):
         raise EntryError(entry, f": {brief(value)} is not text; give a name in quotes")
     if not value.strip():
         raise EntryError(entry, f": {brief(value)} is empty; give a name")
-    if any(unicodedata.category(character) in _NO_TEXT for character in value):
+    shown = "".join(value.split()) if lines else value
+    if any(unicodedata.category(character) in _NO_TEXT for character in shown):
         raise EntryError(entry, f": {brief(value)} has a control character; give a name without")
     return value
 

@@ -118,7 +118,7 @@ class Frf:
             dof=text(dof, "frf: dof"),
             reference=text(reference, "frf: reference"),
             quantity=choice(quantity, "frf: quantity", _DERIVATIVES),
-            about=about and text(about, "frf: about"),
+            about=about and text(about, "frf: about", lines=True),
         )
 
     @classmethod
