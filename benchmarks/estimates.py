@@ -7,8 +7,7 @@ Usage::
 Beams, chains with few and many contacts, damping that is not proportional, microslip, a stop, a
 node in space and mistuned rings of which 1, 2 or 4 contacts slip, with 1, 3, 9 and 15 harmonics:
 one frequency from nothing, and a curve whose solutions start from their neighbours. The smallest
-times of runs on one thread. The first of the two ratios should stay
-below 1; of small models it does not.
+times of runs on one thread. An estimate should never take longer than its solution.
 """
 
 from __future__ import annotations

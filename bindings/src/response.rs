@@ -80,10 +80,7 @@ fn swept<'py>(
     let columns = Columns::new(py);
     columns.responses(points.clone(), observed, model.compliance().contacts())?;
     columns.tell("end", end_name(found.end))?;
-    let told = curve(columns, points, found.half_wave, found.interrupted, &found.profile);
-    // Millions of small pieces of memory take longer to give back than Ctrl-C may take.
-    std::thread::spawn(move || drop(found));
-    told
+    curve(columns, points, found.half_wave, found.interrupted, &found.profile)
 }
 
 /// How a curve ended, as Python knows it.

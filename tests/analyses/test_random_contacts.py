@@ -131,6 +131,8 @@ def agree(seed: int) -> str:
     )
     orbit = ss.exact_response(model, [omega])
     other = np.abs(amplitudes(sampled) - size).max() / size.max()
+    # A body that nothing holds is found by the balance alone.
+    assert codes & NAMED or sampled.status[0].solved and orbit.status[0].solved
     assert not sampled.status[0].solved or other < max(1e-2, error)
     if orbit.status[0].solved:
         assert np.abs(amplitudes(orbit) - size).max() / size.max() < max(1e-2, 3.0 * error)
@@ -149,7 +151,7 @@ def agree(seed: int) -> str:
 @pytest.mark.parametrize("first", range(53, 105, 13))
 def test_four_ways_to_the_vibration_of_random_systems_agree(first: int) -> None:
     ends = [agree(seed) for seed in range(first, first + 13)]
-    assert ends.count("solved") > 6, ends
+    assert ends.count("solved") >= 11, ends
 
 
 def touching() -> ss.Model:
