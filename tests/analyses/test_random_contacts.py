@@ -132,7 +132,7 @@ def agree(seed: int) -> str:
     orbit = ss.exact_response(model, [omega])
     other = np.abs(amplitudes(sampled) - size).max() / size.max()
     # A body that nothing holds is found by the balance alone.
-    assert codes & NAMED or sampled.status[0].solved and orbit.status[0].solved
+    assert codes & NAMED or (sampled.status[0].solved and orbit.status[0].solved)
     assert not sampled.status[0].solved or other < max(1e-2, error)
     if orbit.status[0].solved:
         assert np.abs(amplitudes(orbit) - size).max() / size.max() < max(1e-2, 3.0 * error)

@@ -115,5 +115,5 @@ def test_what_tells_functions_apart_is_one_line(tmp_path):
     ss.write_frf(tmp_path / "a.uff", [given, ss.Frf([1.0, 2.0], [1.0, 2.0], "1.1", "1.1")])
     named, plain = ss.read_frf(tmp_path / "a.uff")
     assert (named.about, plain.about) == (f"preload = 1 N level = 2{57 * 'x'}", "")
-    with pytest.raises(ss.ModelError, match="about: .* has a control character"):
+    with pytest.raises(ss.ModelError, match=r"about: .* has a control character"):
         ss.Frf([1.0, 2.0], [1.0, 2.0], "1.1", "1.1", about="a\0b")
