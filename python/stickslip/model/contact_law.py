@@ -258,7 +258,8 @@ class ContactLaw(Contact):
         self, before: Matrix, after: Matrix, state: Matrix, derive: bool
     ) -> tuple[Matrix, Matrix, list[Matrix] | None] | None:
         """Return force, state and tangents; None once an error was raised, which is kept."""
-        if self._raised is not None:
+        # Motions that are no numbers come of an error of another thread: the law is not to blame.
+        if self._raised is not None or not np.isfinite(after).all():
             return None
         try:
             for array in (before, after, state):
