@@ -259,7 +259,8 @@ class ContactLaw(Contact):
     ) -> tuple[Matrix, Matrix, list[Matrix] | None] | None:
         """Return force, state and tangents; None once an error was raised, which is kept."""
         # Motions that are no numbers come of an error of another thread: the law is not to blame.
-        if self._raised is not None or not np.isfinite(after).all():
+        numbers = all(np.isfinite(array).all() for array in (before, after, state))
+        if self._raised is not None or not numbers:
             return None
         try:
             for array in (before, after, state):
