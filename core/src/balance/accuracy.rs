@@ -37,14 +37,15 @@ const LEAST: usize = 2;
 /// tangent of their own.
 const OF_SOLUTION: f64 = 6.0;
 
-/// Effort of an estimate over that of the solution, both as reckoned. A solution does more beside its
-/// steps than is reckoned: measured, an estimate of this effort takes 0.1 to 1 times as long. With
-/// less, estimates at low frequencies stop short of the stuck modes, and of the error.
+/// Effort of an estimate over that of the Newton steps of the solution, both as reckoned, and at most
+/// over that of its compliances and displacements. Steps do more than is reckoned: measured, an estimate
+/// takes 0.1 to 0.9 times as long as a solution from nothing. With less, estimates at low frequencies
+/// stop short of the stuck modes, and of the error.
 const ALLOWED: f64 = 3.0;
-/// The same of a ring, of which nearly all is reckoned.
-const ALLOWED_OF_RING: f64 = 1.6;
+/// The same of a ring, whose solutions start from nothing nearly as fast as from a neighbour.
+const ALLOWED_OF_RING: f64 = 0.64;
 /// The same of many contacts, whose products with the modes are reckoned as they are.
-const ALLOWED_OF_MANY: f64 = 0.5;
+const ALLOWED_OF_MANY: f64 = 0.25;
 
 /// Share of the defect at a contact that a step may leave: where it leaves more, the tangent was not that
 /// of the way.
@@ -52,7 +53,7 @@ const UNEXPLAINED: f64 = 0.3;
 
 /// The change after the second step counts up to this multiple of that after the first, unless a contact
 /// begins or ceases to slip: at nearly rigid contacts that go on slipping it overshoots tenfold.
-const TRUSTED: f64 = 2.0;
+const TRUSTED: f64 = 1.5;
 
 /// The extended balance of a solution. It follows from the model and the solution and not from the
 /// way to it: all methods and starts estimate alike.
@@ -61,6 +62,8 @@ pub(super) struct Extension {
     pub(super) highest: usize,
     /// Whether a second step can be afforded.
     second_step: bool,
+    /// What its changes count, so that they stand for those of harmonics that it cannot afford as well.
+    unseen: f64,
 }
 
 impl Extension {
@@ -81,19 +84,24 @@ impl Extension {
         let effort = Effort { model, half_wave: kept.half_wave(), slipping, observed };
         // The compliances of the kept harmonics are known; all are recovered, after each step.
         let known = effort.orders(highest, [1.0, 0.0]);
-        let solution = effort.orders(highest, [1.0, 1.0]) + OF_SOLUTION * effort.step(highest);
         let is_ring = model.compliance().ring().is_some();
-        let allowed = match (is_ring, effort.is_of_many(highest)) {
+        let share = match (is_ring, effort.is_of_many(highest)) {
             (true, _) => ALLOWED_OF_RING,
             (_, true) => ALLOWED_OF_MANY,
             _ => ALLOWED,
-        } * solution;
+        };
+        let steps = OF_SOLUTION * effort.step(highest);
+        let allowed = share.min(1.0) * effort.orders(highest, [1.0, 1.0]) + share * steps;
         let affordable = |order: &usize| {
             effort.orders(*order, [1.0, 2.0]) - known + 2.0 * effort.step(*order) <= allowed
         };
         let candidates = (highest + least..=wanted).step_by(least);
         let farthest = candidates.take_while(affordable).last();
-        Self { highest: farthest.unwrap_or(highest + least), second_step: farthest.is_some() }
+        let order = farthest.unwrap_or(highest + least);
+        // Friction forces have kinks: their harmonics fall with the square of the order.
+        let sum = |to: usize| 1.0 / (highest + least) as f64 - 1.0 / (to + least) as f64;
+        let unseen = sum(wanted.max(order)) / sum(order);
+        Self { highest: order, second_step: farthest.is_some(), unseen }
     }
 
     /// Not beyond a harmonic.
@@ -212,6 +220,7 @@ pub(super) fn errors(
             break;
         }
     }
+    errors.iter_mut().for_each(|error| *error *= extension.unseen);
     Ok(Some(errors))
 }
 
