@@ -47,3 +47,25 @@ def test_what_nothing_holds_is_said_at_once(ground: float, status: str) -> None:
     # It took thousands of evaluations, and the name was wrong.
     assert frf.counters["evaluations"] < 100
     assert np.isnan(frf.amplitude("x0")[0]) == (status == "free")
+
+
+@pytest.mark.parametrize(("ground", "status"), [(0.0, "free"), (50.0, "converged")])
+def test_orbits_name_a_body_that_may_stand_anywhere(ground: float, status: str) -> None:
+    structure = ss.Structure(
+        mass=np.diag([1.0, 1.0]),
+        stiffness=np.diag([1e4, ground]),
+        damping=np.diag([10.0, 10.0]),
+        dofs=["x", "z"],
+    )
+    floor = ss.Coulomb(
+        ["x", "z"],
+        normal=[0.0, -1.0],
+        friction=0.3,
+        tangential_stiffness=1e4,
+        normal_stiffness=2e4,
+        gap=0.01,
+    )
+    model = ss.Model(structure, [floor], [ss.Force("x", 5.0), ss.Force("z", 10.0)])
+    orbit = ss.exact_response(model, [90.0])
+    assert orbit.status == (status,)
+    assert orbit.status[0].advice.count("ground the body") == (status == "free")

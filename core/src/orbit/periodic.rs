@@ -241,7 +241,10 @@ impl<'a> PeriodicOrbits<'a> {
         }
         let mut left = vec![0.0; y.len()];
         if !shooting.solve(&residual, &mut left) {
-            return Ok(self.empty(omega, PointStatus::Singular));
+            // Contacts have let go of a body that they alone hold: it may as well stand elsewhere.
+            let floats = !system.rigid_modes().is_empty();
+            let status = if floats { PointStatus::Free } else { PointStatus::Singular };
+            return Ok(self.empty(omega, status));
         }
         let known =
             match self.rotation {
