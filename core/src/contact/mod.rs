@@ -18,6 +18,7 @@ mod coulomb_period;
 mod coulomb_plane;
 mod coulomb_play;
 mod coulomb_slip;
+mod coulomb_step;
 mod cubic;
 mod derivative;
 mod described;

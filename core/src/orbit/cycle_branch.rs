@@ -1,7 +1,8 @@
 //! The branch of limit cycles of a mode: from the stuck limit through the fold to the slipping side.
 
+use super::cycle_orbits::CycleOrbits;
 use super::cycles::{relative, Cycle, CycleSettings, LimitCycles, Turn, RARE};
-use super::limit_cycle::{CycleOrbits, OrbitCurve};
+use super::limit_cycle::OrbitCurve;
 use super::orbit_postprocess::postprocess;
 use super::quadrature::Quadrature;
 use super::sides::{extreme, joined, value, Sides};

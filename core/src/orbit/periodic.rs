@@ -1,24 +1,22 @@
 //! The exact periodic orbit at one frequency.
 
+use super::closed::{left_error, Orbit};
 use super::quadrature::Quadrature;
-use super::residual::shifted;
 use super::rotation::Rotation;
 use super::settings::OrbitSettings;
 use super::shooting::{Shooting, STEPS};
 use super::sliders::{choose, Assumption, Chosen};
 use super::start::{later, start_of};
-use super::survey::Survey;
 use crate::balance::{
     with_history, ForcedBalance, HarmonicChoice, Kept, Point, PointStatus, Progress, Settings,
 };
 use crate::contact::Residual;
 use crate::model::Model;
-use crate::motion::{Event, ModalSystem, State};
+use crate::motion::{ModalSystem, State};
 use crate::solve::{newton, NewtonSettings, Outcome, System as _};
 use crate::timing::Profile;
 use crate::Error;
 use faer::c64;
-use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// Harmonics of the balance that a cold start comes from.
@@ -31,37 +29,11 @@ const FIRST_SPANS: usize = 4;
 /// period.
 pub(super) const FASTEST: f64 = 3e4;
 
-/// Friction work, relative to that of the limit over the range of the motion, that is none.
-const TOUCHED: f64 = 1e-9;
-
 /// Closing error, relative to the motion, of an orbit.
 const CLOSED: f64 = 1e-10;
 
 /// Error of a multiplier.
 const ROUNDING: f64 = 1e-8;
-
-/// An exact periodic orbit.
-#[derive(Debug, Clone)]
-pub struct Orbit {
-    /// Harmonics, status, slip and friction work, as of a harmonic balance.
-    pub response: Point,
-    /// Lowest and highest displacement of each observed DOF \[m\].
-    pub range: Vec<[f64; 2]>,
-    /// State at the start of the period: displacements and velocities of all DOFs, contact forces.
-    pub state: Vec<f64>,
-    /// Floquet multipliers over the full period, the neutral ones first, then by falling modulus.
-    pub multipliers: Vec<c64>,
-    /// Number of neutral multipliers, of exactly 1: a contact that never slips keeps its mean force,
-    /// and a structure that nothing holds stays or drifts where it is pushed.
-    pub neutral: usize,
-    /// Work of the external forces per period \[J\].
-    pub work: f64,
-    /// Work lost to viscous damping per period \[J\].
-    pub viscous: f64,
-    /// Events of the period, in order of time.
-    pub events: Vec<Event>,
-    start: Option<State>,
-}
 
 /// Exact orbits of a model, from frequency to frequency.
 pub struct PeriodicOrbits<'a> {
@@ -221,7 +193,7 @@ impl<'a> PeriodicOrbits<'a> {
             (y, iterations, chosen)
         });
         self.profile.evaluations += shooting.flow.steps;
-        let Some((mut y, iterations, chosen)) = solved else {
+        let Some((y, iterations, chosen)) = solved else {
             return Ok(self.empty(omega, PointStatus::NotComputed));
         };
         if chosen == Chosen::Lost && shooting.interrupted() {
@@ -254,10 +226,15 @@ impl<'a> PeriodicOrbits<'a> {
                 })?),
             };
         self.profile.factorisations += shooting.matrices;
-        let (mut orbit, touches) = self.survey(&mut shooting, &system, omega, &mut y);
+        let start = std::time::Instant::now();
+        let empty = self.empty(omega, PointStatus::Converged);
+        let (settings, quadrature) = (&self.settings, &mut self.quadrature);
+        let (mut orbit, touches) =
+            empty.read(&mut shooting, &y, settings, self.observe, quadrature);
+        self.profile.recovery += start.elapsed();
         orbit.response.residual = closing;
         orbit.response.iterations = iterations;
-        orbit.response.error_estimate = self.left_error(&shooting, &system, &left);
+        orbit.response.error_estimate = left_error(&shooting, self.observe, &left);
         if let Some((multipliers, neutral)) = known {
             orbit.neutral = neutral;
             // Where a limit is touched they are those of disturbances away from it: what grows there
@@ -382,97 +359,5 @@ impl<'a> PeriodicOrbits<'a> {
             ),
             _ => rest,
         }
-    }
-
-    /// Passes along the closed orbit and reads everything off it; also whether a contact in a plane touches
-    /// its limit.
-    fn survey(
-        &mut self,
-        shooting: &mut Shooting<'_>,
-        system: &ModalSystem,
-        omega: f64,
-        y: &mut [f64],
-    ) -> (Orbit, bool) {
-        let start = std::time::Instant::now();
-        let highest = self.settings.harmonics;
-        let span = TAU / omega * if self.half_wave { 0.5 } else { 1.0 };
-        let mut state = shooting.state(y);
-        let mut orbit = self.empty(omega, PointStatus::Converged);
-        let mut touches = false;
-        for pass in 0..2 {
-            orbit.state = state.to_dofs(system);
-            orbit.start = Some(state.clone());
-            let mut survey = Survey::new(
-                system,
-                omega,
-                self.half_wave,
-                highest,
-                self.observe,
-                &mut self.quadrature,
-            );
-            let first = state.clone();
-            // The orbit has closed with this flow, so that it runs to the end.
-            let _ = shooting.flow.run(&mut state, span, &mut |passage| {
-                survey.include(&passage);
-            });
-            survey.finish();
-            let observed = self.observe.len();
-            // One that Newton's method has pushed to its limit touches it for an instant.
-            let still = |i: usize| {
-                let (own, limit) = (&survey.contacts[i], system.limits()[i]);
-                let [low, high] = survey.range[observed + i];
-                own.slip_fraction == 0.0 || own.dissipation.abs() <= TOUCHED * limit * (high - low)
-            };
-            let neutral: Vec<usize> = (0..system.points())
-                .filter(|&i| still(i) && system.limits()[i] > 0.0)
-                // Where these begin to load says what they hold.
-                .filter(|&i| !system.is_microslip(i))
-                .collect();
-            let range = &survey.range[observed..];
-            let middle: Vec<f64> = range.iter().map(|r| 0.5 * (r[0] + r[1])).collect();
-            let half: Vec<f64> = range.iter().map(|r| 0.5 * (r[1] - r[0])).collect();
-            let residual = self.settings.residual;
-            let moved = (pass == 0 && !self.half_wave)
-                .then(|| shifted(system, residual, &neutral, &middle, &half, &first))
-                .flatten();
-            if let Some(moved) = moved {
-                state = moved;
-                continue;
-            }
-            survey.write(&mut orbit.response);
-            orbit.range = survey.range[..observed].to_vec();
-            (orbit.work, orbit.viscous) = (survey.work, survey.viscous);
-            orbit.events = std::mem::take(&mut survey.events);
-            touches = survey.touches();
-            break;
-        }
-        self.profile.recovery += start.elapsed();
-        (orbit, touches)
-    }
-
-    /// Displacement error of the observed DOFs that the closing error leaves \[m\].
-    fn left_error(&self, shooting: &Shooting<'_>, system: &ModalSystem, left: &[f64]) -> Vec<f64> {
-        let (error, _) = shooting.coordinates.state(left);
-        self.observe
-            .iter()
-            .map(|&dof| {
-                let parts = system.shape(dof).zip(&error.displacement);
-                parts.map(|(shape, x)| (shape * x).abs()).sum()
-            })
-            .collect()
-    }
-}
-
-impl Orbit {
-    /// Half ranges of the observed DOFs \[m\].
-    #[must_use]
-    pub fn half_ranges(&self) -> Vec<f64> {
-        self.range.iter().map(|[low, high]| 0.5 * (high - low)).collect()
-    }
-
-    /// State at the start of the period, for a neighbouring frequency to start from.
-    #[must_use]
-    pub fn start(&self) -> Option<&State> {
-        self.start.as_ref()
     }
 }

@@ -1,7 +1,8 @@
 //! Floquet multipliers along a branch of limit cycles, and where its stability changes.
 
+use super::cycle_orbits::CycleOrbits;
 use super::cycles::{Change, ChangeKind, LimitCycles};
-use super::limit_cycle::{CycleOrbits, OrbitCurve};
+use super::limit_cycle::OrbitCurve;
 use super::period_map::PeriodMap;
 use crate::model::FlutterModel;
 use crate::solve::{across, at_parameter, Curve as _};

@@ -1,6 +1,7 @@
 //! Exact orbits over frequency, and their true maximum.
 
-use super::periodic::{Orbit, PeriodicOrbits};
+use super::closed::Orbit;
+use super::periodic::PeriodicOrbits;
 use crate::balance::{brent, check_bracket, over_frequencies, PointStatus};
 use crate::fourier::Measure;
 use crate::motion::State;
