@@ -7,6 +7,7 @@
 
 use super::loss::Loss;
 use super::shear_layer::Layer;
+use crate::fourier::{Lanes, NODES};
 use crate::Error;
 
 /// Rise of a table's slope, relative to it, that is rounding.
@@ -142,6 +143,19 @@ impl Backbone {
         }
     }
 
+    /// Value and slope of the loss at many displacements.
+    pub(super) fn losses(&self, x: &Lanes) -> [Lanes; 2] {
+        if let Self::ShearLayer(layer) = self {
+            return layer.losses(x);
+        }
+        let mut losses = [[0.0; NODES]; 2];
+        for (i, x) in x.iter().enumerate() {
+            let loss = self.loss(*x);
+            (losses[0][i], losses[1][i]) = (loss.value, loss.slope);
+        }
+        losses
+    }
+
     /// The loss by the formula that holds up to the first break at or behind `piece` breaks: beyond it
     /// the formula goes on as far as it has a meaning.
     pub(super) fn loss_on(&self, piece: usize, x: f64) -> Loss {
@@ -153,6 +167,17 @@ impl Backbone {
             Self::Table(table) => table.on_row(piece, x),
             Self::ShearLayer(_) if piece == 0 => Loss::default(),
             _ => self.loss(x),
+        }
+    }
+
+    /// Value at x = 0 and slope of the loss behind so many breaks, if it is a straight line there.
+    pub(super) fn line(&self, piece: usize) -> Option<[f64; 2]> {
+        match self {
+            Self::ShearLayer(_) if piece == 0 => Some([0.0, 0.0]),
+            Self::Table(table) => Some([table.at_rest(piece), table.slope[piece]]),
+            Self::ShearLayer(_) if piece == 2 => Some([-1.0, 1.0]),
+            Self::Iwan { .. } if piece == 1 => Some([-1.0, 1.0]),
+            _ => None,
         }
     }
 
@@ -266,6 +291,11 @@ fn power_loss(chi: f64, beta: f64, share: f64) -> Loss {
 impl Table {
     fn loss(&self, x: f64) -> Loss {
         self.on_row(self.x.partition_point(|own| *own <= x).max(1) - 1, x)
+    }
+
+    /// What the straight line behind a row would be at x = 0.
+    fn at_rest(&self, row: usize) -> f64 {
+        self.loss[row].value - self.slope[row] * self.x[row]
     }
 
     fn on_row(&self, row: usize, x: f64) -> Loss {

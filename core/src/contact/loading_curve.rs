@@ -2,6 +2,7 @@
 
 use super::backbone::Backbone;
 use super::loss::Loss;
+use crate::fourier::Lanes;
 use std::sync::Arc;
 
 /// Reversals that a state tells of a contact without sliders, behind its origin.
@@ -42,6 +43,16 @@ impl LoadingCurve {
         Loss { integral: s / k * s * own.integral, value: s * own.value, slope: k * own.slope }
     }
 
+    /// Value \[N\] and slope [N/m] of the loss at many displacements.
+    pub(super) fn losses(&self, u: &Lanes) -> [Lanes; 2] {
+        let (k, s) = (self.stiffness, self.slip_force);
+        if k == 0.0 || s == 0.0 || s == f64::INFINITY {
+            return [u.map(|u| self.loss(u).value), u.map(|u| self.loss(u).slope)];
+        }
+        let [value, slope] = self.backbone.losses(&u.map(|u| self.x(u)));
+        [value.map(|own| s * own), slope.map(|own| k * own)]
+    }
+
     /// Stiffness at rest [N/m].
     pub(crate) fn stiffness(&self) -> f64 {
         self.stiffness
@@ -65,6 +76,19 @@ impl LoadingCurve {
         }
         let own = self.backbone.loss_on(piece, self.x(u));
         [s * own.value, k * own.slope]
+    }
+
+    /// Value at no displacement \[N\] and slope [N/m] of the loss behind so many breaks, if it is a straight
+    /// line there.
+    pub(super) fn line(&self, piece: usize) -> Option<[f64; 2]> {
+        let (k, s) = (self.stiffness, self.slip_force);
+        if k == 0.0 || s == f64::INFINITY {
+            return Some([0.0, 0.0]);
+        }
+        if s == 0.0 {
+            return Some([0.0, k]);
+        }
+        self.backbone.line(piece).map(|[value, slope]| [s * value, k * slope])
     }
 
     /// Displacements where the backbone is not analytic \[m\].

@@ -33,6 +33,8 @@ pub(super) struct Stretch {
     pub(super) reverses: bool,
     /// Whether it ends where all of the contact begins to slip.
     pub(super) reaches_end: bool,
+    /// How many displacements it has passed at which the backbone is not analytic.
+    pub(super) piece: usize,
 }
 
 /// A period, or half of one under half-wave symmetry.
@@ -181,28 +183,35 @@ impl Walk<'_> {
     ) {
         let Branch { origin, sign, .. } = self.loops.branches[branch];
         let mut from = start;
-        let last = self.breaks.len().saturating_sub(1);
-        for index in 0..self.breaks.len() {
-            let target = origin + 2.0 * sign * self.breaks[index];
-            if sign * (target - from.value) <= 0.0 {
-                continue;
-            }
+        let target = |own: f64| origin + 2.0 * sign * own;
+        let passed = |own: &f64| sign * (target(*own) - start.value) <= 0.0;
+        let first = self.breaks.partition_point(passed);
+        for piece in first..self.breaks.len() {
+            let target = target(self.breaks[piece]);
             if sign * (end.value - target) <= 0.0 {
-                break;
+                return self.push(branch, from, end, piece, false);
             }
             let to = self.reach(leg, from, target);
-            self.push(branch, from, to, index == last);
+            self.push(branch, from, to, piece, piece + 1 == self.breaks.len());
             from = to;
         }
-        self.push(branch, from, end, false);
+        self.push(branch, from, end, self.breaks.len(), false);
     }
 
-    fn push(&mut self, branch: usize, from: TurningPoint, to: TurningPoint, reaches_end: bool) {
+    fn push(
+        &mut self,
+        branch: usize,
+        from: TurningPoint,
+        to: TurningPoint,
+        piece: usize,
+        reaches_end: bool,
+    ) {
         if to.theta > from.theta {
             let reverses = from.value == self.loops.branches[branch].origin;
             let (start, end) = (from.theta, to.theta);
             let reaches_end = reaches_end && self.curve.backbone.root_at_end();
-            self.loops.stretches.push(Stretch { branch, start, end, reverses, reaches_end });
+            let stretch = Stretch { branch, start, end, reverses, reaches_end, piece };
+            self.loops.stretches.push(stretch);
         }
     }
 }

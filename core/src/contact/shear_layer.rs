@@ -3,9 +3,11 @@
 //! By the share α of the bar that slips, with `T = tanh Λ(1 − α)` and `T₀ = tanh Λ`,
 //! `φ = α + T/Λ` and `x = Λ T₀ (1/Λ² + w)` with `w = α²/2 + α T/Λ`. In `y = √(1 − 2w)` the loss is analytic
 //! up to where all of the bar slips, y = 0: there it is kept as Chebyshev series on as many intervals as
-//! give it an error of 1e-12, for the equation of α takes ten times as long.
+//! give it an error of 1e-12, for the equation of α takes ten times as long; summed as powers.
 
 use super::loss::Loss;
+use crate::fourier::{Lanes, NODES};
+use pulp::{Scalar, Simd, WithSimd};
 use std::f64::consts::PI;
 
 /// Last step of an iteration that squares its error, relative to the solution.
@@ -16,6 +18,8 @@ const TERMS: usize = 14;
 const LEFT_OUT: f64 = 1e-13;
 /// Share of the bar in slip up to which α itself is sought: the series would lose the digits of a small loss.
 const LITTLE: f64 = 0.01;
+/// Sums of a series that are made together.
+const WIDE: usize = 4;
 /// Halvings of an interval at most.
 const HALVINGS: u32 = 16;
 /// Share of displacement and work by which the rounding of a loss is wrong, as a difference of them.
@@ -34,12 +38,13 @@ pub struct Layer {
     pieces: Vec<Piece>,
 }
 
-/// Series of the loss over w², w³ and w, of value, integral and slope.
+/// Powers of the place on an interval of y, −1 to 1, of the loss over w², w and w³: value, slope and
+/// integral, and what fills the vector.
 #[derive(Debug, Clone, PartialEq)]
 struct Piece {
     low: f64,
     high: f64,
-    terms: [[f64; 3]; TERMS],
+    powers: [[f64; WIDE]; TERMS],
 }
 
 impl Layer {
@@ -63,7 +68,7 @@ impl Layer {
             let stuck = self.sticking(y);
             let x = self.begin + self.lag * self.stuck * w;
             let loss = self.at(x, 1.0 - stuck, (self.lag * stuck).tanh());
-            [loss.value / (w * w), loss.integral / (w * w * w), loss.slope / w]
+            [loss.value / (w * w), loss.slope / w, loss.integral / (w * w * w)]
         });
         let mut terms = [[0.0; 3]; TERMS];
         for (k, term) in terms.iter_mut().enumerate() {
@@ -74,7 +79,7 @@ impl Layer {
             }
         }
         let w = 0.5 * (1.0 - low * low);
-        let lost = [self.end / (w * w), self.end * self.end / (w * w * w), 1.0 / w];
+        let lost = [self.end / (w * w), 1.0 / w, self.end * self.end / (w * w * w)];
         let rough = (0..3).any(|i| {
             let size = values.iter().fold(0.0_f64, |most, value| most.max(value[i].abs()));
             let most = (LEFT_OUT * size).max(ROUNDING * lost[i]);
@@ -85,7 +90,7 @@ impl Layer {
             self.fit(low, middle, halvings - 1);
             self.fit(middle, high, halvings - 1);
         } else {
-            self.pieces.push(Piece { low, high, terms });
+            self.pieces.push(Piece { low, high, powers: powers(&terms) });
         }
     }
 
@@ -178,8 +183,13 @@ impl Layer {
             return self.at(x, alpha, (self.lag * (1.0 - alpha)).tanh());
         };
         let w = (x - self.begin) / unit;
-        let [value, integral, slope] = piece.at(y);
+        let [value, slope, integral, _] = piece.at(Scalar::new(), y);
         Loss { integral: w * w * w * integral, value: w * w * value, slope: w * slope }
+    }
+
+    /// Value and slope of the loss at many displacements.
+    pub(super) fn losses(&self, x: &Lanes) -> [Lanes; 2] {
+        pulp::Arch::new().dispatch(Losing { layer: self, x })
     }
 
     /// `∂φ/∂Λ` at a fixed x.
@@ -199,15 +209,78 @@ impl Layer {
 }
 
 impl Piece {
-    /// The three series at y (Clenshaw).
-    fn at(&self, y: f64) -> [f64; 3] {
-        let double = 2.0 * (2.0 * y - self.low - self.high) / (self.high - self.low);
-        let (mut last, mut before) = ([0.0; 3], [0.0; 3]);
-        for term in self.terms[1..].iter().rev() {
-            let next = std::array::from_fn(|i| term[i] + double * last[i] - before[i]);
-            (before, last) = (last, next);
+    /// The series at y.
+    #[inline(always)]
+    fn at<S: Simd>(&self, simd: S, y: f64) -> [f64; WIDE] {
+        const { assert!(S::F64_LANES <= WIDE) };
+        let place = simd.splat_f64s((2.0 * y - self.low - self.high) / (self.high - self.low));
+        let mut out = [0.0; WIDE];
+        let (sums, _) = S::as_mut_simd_f64s(&mut out);
+        for power in self.powers.iter().rev() {
+            for (sum, power) in sums.iter_mut().zip(S::as_simd_f64s(power).0) {
+                *sum = simd.mul_add_e_f64s(*sum, place, *power);
+            }
         }
-        std::array::from_fn(|i| self.terms[0][i] + 0.5 * double * last[i] - before[i])
+        out
+    }
+}
+
+/// A series of Chebyshev polynomials in powers of their argument.
+fn powers(terms: &[[f64; 3]; TERMS]) -> [[f64; WIDE]; TERMS] {
+    let mut powers = [[0.0; WIDE]; TERMS];
+    let (mut before, mut own) = ([0.0; TERMS], [0.0; TERMS]);
+    own[0] = 1.0;
+    for (k, term) in terms.iter().enumerate() {
+        for (power, share) in powers.iter_mut().zip(own) {
+            (0..3).for_each(|i| power[i] += share * term[i]);
+        }
+        let twice = if k == 0 { 1.0 } else { 2.0 };
+        let next = |n: usize| if n == 0 { 0.0 } else { twice * own[n - 1] };
+        let next = std::array::from_fn(|n| next(n) - before[n]);
+        (before, own) = (own, next);
+    }
+    powers
+}
+
+/// The loss at many displacements.
+struct Losing<'a> {
+    layer: &'a Layer,
+    x: &'a Lanes,
+}
+
+impl WithSimd for Losing<'_> {
+    type Output = [Lanes; 2];
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> [Lanes; 2] {
+        let Self { layer, x } = self;
+        let unit = layer.lag * layer.stuck;
+        let (mut w, mut y) = ([0.0; NODES], [0.0; NODES]);
+        for i in 0..NODES {
+            w[i] = (x[i] - layer.begin) / unit;
+            y[i] = (2.0 * (layer.end - x[i]) / unit).max(0.0).sqrt();
+        }
+        let [mut value, mut slope] = [[0.0; NODES]; 2];
+        let (last, mut number) = (layer.pieces.len() - 1, 0);
+        for i in 0..NODES {
+            // Neighbours lie on the same interval as a rule.
+            while number < last && layer.pieces[number].high < y[i] {
+                number += 1;
+            }
+            while number > 0 && layer.pieces[number].low > y[i] {
+                number -= 1;
+            }
+            let sum = layer.pieces[number].at(simd, y[i]);
+            (value[i], slope[i]) = (w[i] * w[i] * sum[0], w[i] * sum[1]);
+        }
+        let highest = layer.pieces.last().map_or(0.0, |piece| piece.high);
+        for i in 0..NODES {
+            if x[i] <= layer.begin || x[i] >= layer.end || y[i] > highest {
+                let loss = layer.loss(x[i]);
+                (value[i], slope[i]) = (loss.value, loss.slope);
+            }
+        }
+        [value, slope]
     }
 }
 
@@ -231,6 +304,25 @@ fn rest_of_tanh(z: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn many_losses_are_those_of_each() {
+        for lag in [0.01, 3.0, 400.0] {
+            let layer = Layer::new(lag);
+            for (from, to) in [(0.0, 1.2), (0.3, 0.4), (1.0 - 1e-6, 1.0 + 1e-6), (1.1, 0.0)] {
+                let x = std::array::from_fn(|i| {
+                    let share = from + (to - from) * i as f64 / (NODES - 1) as f64;
+                    layer.begin + (layer.end - layer.begin) * share
+                });
+                let [value, slope] = layer.losses(&x);
+                for i in 0..NODES {
+                    let one = layer.loss(x[i]);
+                    assert!((value[i] - one.value).abs() <= 1e-14 * one.value, "{lag} {i}");
+                    assert!((slope[i] - one.slope).abs() <= 1e-14, "{lag} {i}");
+                }
+            }
+        }
+    }
 
     #[test]
     fn the_series_are_the_solution() {

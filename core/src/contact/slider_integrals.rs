@@ -70,13 +70,16 @@ pub(super) fn add_slipping(
 
 /// Basis integrals over intervals, from the antiderivatives at their two ends.
 pub(super) struct Bounds {
-    /// Antiderivatives at the start and, behind them, at the end.
-    ends: Vec<f64>,
+    /// Antiderivatives at the start and at the end.
+    ends: [Vec<f64>; 2],
+    /// The end, with which the next interval begins as a rule.
+    at: f64,
 }
 
 impl Bounds {
     pub(super) fn new(harmonics: &Harmonics) -> Self {
-        Self { ends: vec![0.0; 2 * harmonics.slots()] }
+        let zero = vec![0.0; harmonics.slots()];
+        Self { ends: [zero.clone(), zero], at: f64::NAN }
     }
 
     /// Adds `factor ∫ basis dθ` to `out`.
@@ -88,12 +91,13 @@ impl Bounds {
         factor: f64,
         out: &mut [f64],
     ) {
-        let (from, to) = self.ends.split_at_mut(harmonics.slots());
-        harmonics.antiderivative(start, from);
-        harmonics.antiderivative(end, to);
-        for ((out, start), end) in out.iter_mut().zip(&*from).zip(&*to) {
-            *out += factor * (end - start);
+        self.ends.swap(0, 1);
+        if start != self.at {
+            harmonics.antiderivative(start, &mut self.ends[0]);
         }
+        harmonics.antiderivative(end, &mut self.ends[1]);
+        self.at = end;
+        add_difference(&self.ends[1], &self.ends[0], factor, out);
     }
 }
 

@@ -3,8 +3,9 @@
 //! All products of two basis functions follow from `∫ cos mθ` and `∫ sin mθ`, m ≤ 2H: their matrix
 //! is Toeplitz plus Hankel, at O(intervals·H + H²) instead of O(samples·H²).
 
-use super::panel::{rotate, Lanes, NODES};
+use super::panel::{rotate, sum, Lanes, NODES};
 use super::Harmonics;
+use pulp::{Simd, WithSimd};
 
 /// `C_m = Σ ∫ cos mθ dθ` and `S_m = Σ ∫ sin mθ dθ` over intervals.
 #[derive(Debug, Clone, Default)]
@@ -29,9 +30,14 @@ impl IntervalSums {
 
     /// Adds the interval `[start, end]` of angles.
     pub fn add(&mut self, start: f64, end: f64) {
-        self.add_length(end - start);
-        self.add_end(end, 1.0);
-        self.add_end(start, -1.0);
+        self.add_weighted(start, end, 1.0);
+    }
+
+    /// The same times a weight.
+    pub fn add_weighted(&mut self, start: f64, end: f64, weight: f64) {
+        self.add_length(weight * (end - start));
+        self.add_end(end, weight);
+        self.add_end(start, -weight);
     }
 
     /// Adds the length of an interval, times its weight.
@@ -65,13 +71,8 @@ impl IntervalSums {
     }
 
     /// Adds instants whose step of angle has these cosines and sines, each with its weight.
-    pub(super) fn add_lanes(&mut self, cos_step: &Lanes, sin_step: &Lanes, weight: &Lanes) {
-        let (mut cos, mut sin) = (*weight, [0.0; NODES]);
-        for order in (0..self.cos.len()).step_by(self.step) {
-            self.cos[order] += cos.iter().sum::<f64>();
-            self.sin[order] += sin.iter().sum::<f64>();
-            rotate(&mut cos, &mut sin, cos_step, sin_step);
-        }
+    pub(super) fn add_lanes(&mut self, step: &[Lanes; 2], weight: &Lanes) {
+        pulp::Arch::new().dispatch(Lanewise { sums: self, step, weight });
     }
 
     /// `Σ ∫ basis_row basis_column dθ` times a factor, handed to `store(row, column, value)`.
@@ -127,6 +128,27 @@ impl IntervalSums {
                 visit(slot, values);
                 slot += 1;
             }
+        }
+    }
+}
+
+/// Instants that are added, lane by lane.
+struct Lanewise<'a> {
+    sums: &'a mut IntervalSums,
+    step: &'a [Lanes; 2],
+    weight: &'a Lanes,
+}
+
+impl WithSimd for Lanewise<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let (mut cos, mut sin) = (*self.weight, [0.0; NODES]);
+        for order in (0..self.sums.cos.len()).step_by(self.sums.step) {
+            self.sums.cos[order] += sum(&cos);
+            self.sums.sin[order] += sum(&sin);
+            rotate(&mut cos, &mut sin, self.step);
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Gauss panels: integrals of smooth functions times the basis over an interval of angles.
 
 use super::{Harmonics, IntervalSums};
+use pulp::{Simd, WithSimd};
 use std::f64::consts::PI;
 use std::sync::OnceLock;
 
@@ -13,6 +14,9 @@ pub type Lanes = [f64; NODES];
 /// Largest product of the highest harmonic and the length of a panel at which the rule integrates
 /// products of two basis functions and a function that it resolves.
 const LENGTH: f64 = 13.0;
+
+/// Terms of the series of cosine and sine beyond the first: what is left out is below rounding.
+const TERMS: usize = 10;
 
 /// The rule of Gauss and Legendre.
 struct Rule {
@@ -118,6 +122,16 @@ impl Interval {
         (self.end - self.start) * (self.part[1] - self.part[0])
     }
 
+    /// How far a product of two functions of the basis turns over half of it at most.
+    #[must_use]
+    pub fn phase(&self, harmonics: &Harmonics) -> f64 {
+        let power = match self.root {
+            Root::None => 1,
+            Root::Start(power) | Root::End(power) => power,
+        };
+        harmonics.highest() as f64 * self.length() * f64::from(power)
+    }
+
     /// Its two halves.
     #[must_use]
     pub fn halves(&self) -> [Self; 2] {
@@ -134,8 +148,8 @@ pub struct Panel {
     pub weight: Lanes,
     /// What the variable is stretched by.
     stretch: Lanes,
-    cos: Lanes,
-    sin: Lanes,
+    /// Cosine and sine of the angle from one harmonic to the next.
+    step: [Lanes; 2],
     /// Cosines and sines of the harmonics k >= 1, in the order of the coefficients.
     basis: Vec<Lanes>,
 }
@@ -146,79 +160,22 @@ impl Panel {
     pub fn new(harmonics: &Harmonics) -> Self {
         let zero = [0.0; NODES];
         let basis = vec![zero; 2 * harmonics.oscillating().len()];
-        Self { weight: zero, stretch: zero, cos: zero, sin: zero, basis }
+        Self { weight: zero, stretch: zero, step: [zero; 2], basis }
     }
 
-    /// Goes to an interval.
-    pub fn place(&mut self, harmonics: &Harmonics, interval: &Interval) {
-        let rule = Rule::get();
-        let [low, high] = interval.part;
-        let length = interval.end - interval.start;
-        for i in 0..NODES {
-            let t = low + (high - low) * 0.5 * (1.0 + rule.node[i]);
-            let (theta, stretch) = match interval.root {
-                Root::None => (interval.start + length * t, 1.0),
-                Root::Start(power) => {
-                    let factor = t.powi(power - 1);
-                    (interval.start + length * factor * t, f64::from(power) * factor)
-                }
-                Root::End(power) => {
-                    let factor = (1.0 - t).powi(power - 1);
-                    (interval.end - length * factor * (1.0 - t), f64::from(power) * factor)
-                }
-            };
-            self.stretch[i] = stretch;
-            self.weight[i] = 0.5 * rule.weight[i] * (high - low) * length * stretch;
-            (self.sin[i], self.cos[i]) = theta.sin_cos();
-        }
-        let (mut cos, mut sin) = (self.cos, self.sin);
-        let [cos_step, sin_step] = if harmonics.half_wave() {
-            doubled(&self.cos, &self.sin)
-        } else {
-            [self.cos, self.sin]
-        };
-        for row in self.basis.chunks_exact_mut(2) {
-            (row[0], row[1]) = (cos, sin);
-            rotate(&mut cos, &mut sin, &cos_step, &sin_step);
-        }
-    }
-
-    /// Values of a series.
-    #[must_use]
-    pub fn series(&self, harmonics: &Harmonics, series: &[f64]) -> Lanes {
-        let mut value = [harmonics.mean(series); NODES];
-        for (row, coefficient) in self.basis.iter().zip(&series[harmonics.offset()..]) {
-            for i in 0..NODES {
-                value[i] += coefficient * row[i];
-            }
-        }
-        value
+    /// Goes to an interval, and gives the values of a series there.
+    pub fn place(&mut self, harmonics: &Harmonics, interval: &Interval, series: &[f64]) -> Lanes {
+        pulp::Arch::new().dispatch(Placing { panel: self, harmonics, interval, series })
     }
 
     /// Adds `∫ f basis dθ`, with the weights in f.
     pub fn add_integrals(&self, harmonics: &Harmonics, weighted: &Lanes, out: &mut [f64]) {
-        if harmonics.has_mean() {
-            out[0] += weighted.iter().sum::<f64>();
-        }
-        for (row, out) in self.basis.iter().zip(&mut out[harmonics.offset()..]) {
-            let mut lanes = [0.0; 4];
-            for (f, b) in weighted.chunks_exact(4).zip(row.chunks_exact(4)) {
-                for i in 0..4 {
-                    lanes[i] += f[i] * b[i];
-                }
-            }
-            *out += lanes.iter().sum::<f64>();
-        }
+        pulp::Arch::new().dispatch(Integrating { panel: self, harmonics, weighted, out });
     }
 
     /// Adds `∫ f cos mθ dθ` and `∫ f sin mθ dθ`, with the weights in f.
-    pub fn add_products(&self, harmonics: &Harmonics, weighted: &Lanes, sums: &mut IntervalSums) {
-        let [cos, sin] = if harmonics.half_wave() {
-            doubled(&self.cos, &self.sin)
-        } else {
-            [self.cos, self.sin]
-        };
-        sums.add_lanes(&cos, &sin, weighted);
+    pub fn add_products(&self, weighted: &Lanes, sums: &mut IntervalSums) {
+        sums.add_lanes(&self.step, weighted);
     }
 
     /// Size of the last terms of the Legendre series of f in the stretched variable.
@@ -231,6 +188,115 @@ impl Panel {
     }
 }
 
+/// A panel that goes to an interval.
+struct Placing<'a> {
+    panel: &'a mut Panel,
+    harmonics: &'a Harmonics,
+    interval: &'a Interval,
+    series: &'a [f64],
+}
+
+impl WithSimd for Placing<'_> {
+    type Output = Lanes;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Lanes {
+        let Self { panel, harmonics, interval, series } = self;
+        let rule = Rule::get();
+        let [low, high] = interval.part;
+        let length = interval.end - interval.start;
+        let (from, power, sign) = match interval.root {
+            Root::None => (interval.start, 1, 1.0),
+            Root::Start(power) => (interval.start, power, 1.0),
+            Root::End(power) => (interval.end, power, -1.0),
+        };
+        let [first, last] = if sign > 0.0 { [low, high] } else { [1.0 - low, 1.0 - high] };
+        let (mut share, mut stretch) = ([0.0; NODES], [1.0; NODES]);
+        (0..NODES).for_each(|i| share[i] = first + (last - first) * 0.5 * (1.0 + rule.node[i]));
+        for _ in 1..power {
+            (0..NODES).for_each(|i| stretch[i] *= share[i]);
+        }
+        // Angles from the middle of those that there are.
+        let middle = 0.5 * length * (first.powi(power) + last.powi(power));
+        let (sin_middle, cos_middle) = (from + sign * middle).sin_cos();
+        let scale = 0.5 * (high - low) * length;
+        let mut angle = [0.0; NODES];
+        for i in 0..NODES {
+            angle[i] = sign * (length * stretch[i] * share[i] - middle);
+            panel.stretch[i] = f64::from(power) * stretch[i];
+            panel.weight[i] = scale * rule.weight[i] * panel.stretch[i];
+        }
+        let [own_cos, own_sin] = cos_sin(&angle);
+        let (mut cos, mut sin) = ([0.0; NODES], [0.0; NODES]);
+        for i in 0..NODES {
+            cos[i] = cos_middle * own_cos[i] - sin_middle * own_sin[i];
+            sin[i] = sin_middle * own_cos[i] + cos_middle * own_sin[i];
+        }
+        panel.step = if harmonics.half_wave() { doubled(&cos, &sin) } else { [cos, sin] };
+        let mut value = [harmonics.mean(series); NODES];
+        let oscillating = series[harmonics.offset()..].chunks_exact(2);
+        for (row, coefficients) in panel.basis.chunks_exact_mut(2).zip(oscillating) {
+            for i in 0..NODES {
+                value[i] += coefficients[0] * cos[i] + coefficients[1] * sin[i];
+            }
+            (row[0], row[1]) = (cos, sin);
+            rotate(&mut cos, &mut sin, &panel.step);
+        }
+        value
+    }
+}
+
+/// Integrals of a function times the basis.
+struct Integrating<'a> {
+    panel: &'a Panel,
+    harmonics: &'a Harmonics,
+    weighted: &'a Lanes,
+    out: &'a mut [f64],
+}
+
+impl WithSimd for Integrating<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { panel, harmonics, weighted, out } = self;
+        if harmonics.has_mean() {
+            out[0] += sum(weighted);
+        }
+        for (row, out) in panel.basis.iter().zip(&mut out[harmonics.offset()..]) {
+            *out += sum(&std::array::from_fn(|i| weighted[i] * row[i]));
+        }
+    }
+}
+
+/// Cosines and sines by their series about zero: the angles of a panel are at most [`LENGTH`]/8.
+#[inline(always)]
+fn cos_sin(angle: &Lanes) -> [Lanes; 2] {
+    let (mut cos, mut sin) = ([1.0; NODES], [1.0; NODES]);
+    let square: Lanes = std::array::from_fn(|i| angle[i] * angle[i]);
+    for n in (1..=TERMS).rev() {
+        let even = -1.0 / ((2 * n - 1) * 2 * n) as f64;
+        let odd = -1.0 / (2 * n * (2 * n + 1)) as f64;
+        for i in 0..NODES {
+            cos[i] = 1.0 + even * square[i] * cos[i];
+            sin[i] = 1.0 + odd * square[i] * sin[i];
+        }
+    }
+    (0..NODES).for_each(|i| sin[i] *= angle[i]);
+    [cos, sin]
+}
+
+/// Sum of all lanes.
+#[inline(always)]
+pub(super) fn sum(lanes: &Lanes) -> f64 {
+    let mut four = [0.0; 4];
+    for part in lanes.chunks_exact(4) {
+        (0..4).for_each(|i| four[i] += part[i]);
+    }
+    (four[0] + four[1]) + (four[2] + four[3])
+}
+
+#[inline(always)]
 fn doubled(cos: &Lanes, sin: &Lanes) -> [Lanes; 2] {
     let mut out = [[0.0; NODES]; 2];
     for i in 0..NODES {
@@ -241,7 +307,8 @@ fn doubled(cos: &Lanes, sin: &Lanes) -> [Lanes; 2] {
 }
 
 /// Turns every lane by its step.
-pub(super) fn rotate(cos: &mut Lanes, sin: &mut Lanes, cos_step: &Lanes, sin_step: &Lanes) {
+#[inline(always)]
+pub(super) fn rotate(cos: &mut Lanes, sin: &mut Lanes, [cos_step, sin_step]: &[Lanes; 2]) {
     for i in 0..NODES {
         let (c, s) = (cos[i], sin[i]);
         cos[i] = c * cos_step[i] - s * sin_step[i];
@@ -262,9 +329,9 @@ mod tests {
             Interval::cut(&harmonics, [0.3, 1.9], powers, &mut intervals);
             let (mut sum, mut length) = (0.0, 0.0);
             for interval in &intervals {
-                panel.place(&harmonics, interval);
+                panel.place(&harmonics, interval, &[0.0; 11]);
                 for i in 0..NODES {
-                    let theta = panel.sin[i].atan2(panel.cos[i]);
+                    let theta = panel.step[1][i].atan2(panel.step[0][i]);
                     let from = if powers[1] > 1 { 1.9 - theta } else { theta - 0.3 };
                     sum += panel.weight[i] * from.max(0.0).powf(exponent);
                     length += panel.weight[i];
@@ -282,9 +349,8 @@ mod tests {
         let mut panel = Panel::new(&harmonics);
         let mut intervals = Vec::new();
         Interval::cut(&harmonics, [0.0, 2.0], [1, 1], &mut intervals);
-        panel.place(&harmonics, &intervals[0]);
-        let smooth = panel.sin.map(f64::exp);
-        let rough = panel.sin.map(|s| (s - 0.3).abs());
+        let sines = panel.place(&harmonics, &intervals[0], &[0.0, 1.0, 0.0, 0.0, 0.0, 0.0]);
+        let (smooth, rough) = (sines.map(f64::exp), sines.map(|s| (s - 0.3).abs()));
         assert!(panel.tail(&smooth) < 1e-12 && panel.tail(&rough) > 1e-4);
     }
 }
