@@ -1,4 +1,4 @@
-"""Elastic dampers in motion: component modes beside all degrees of freedom, stiff ones beside rigid bodies."""
+"""Elastic dampers in motion: component modes beside all degrees of freedom, stiff and rigid."""
 
 import numpy as np
 import pytest
