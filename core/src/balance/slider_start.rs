@@ -24,7 +24,7 @@ use crate::Error;
 /// Halvings of the way to other sliders after which there is no motion with them.
 const HALVINGS: i32 = 3;
 /// Iterations in which a far start leads to a motion.
-const LOOK: usize = 20;
+const LOOK: usize = 30;
 /// Distance from its limit, relative to its range, at which a slider is free to move: derivatives are
 /// those inwards.
 const INSIDE: f64 = 1e-7;

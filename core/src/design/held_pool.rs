@@ -5,7 +5,7 @@ use crate::balance::{HeldMotion, SliderBalance};
 /// Corners that are tried at most.
 const CORNERS: usize = 8;
 /// Vibrations from which others are looked for, as complex multiples of the curve's.
-const STARTS: [[f64; 2]; 3] = [[0.0, 3.0], [-3.0, 0.0], [-10.0, 0.0]];
+const STARTS: [[f64; 2]; 2] = [[0.0, 3.0], [-3.0, 0.0]];
 /// Width of the bounds, relative to the amplitude, that is none.
 pub(super) const NO_WIDTH: f64 = 1e-9;
 /// Distance of two positions, relative to their range, that is none.
