@@ -180,6 +180,21 @@ def test_peaks_of_a_published_system_are_those_of_time_integration(load, factor)
     assert peak.amplitude == pytest.approx(run.amplitude("left.y"), rel=5e-4)
 
 
+@pytest.mark.slow
+def test_what_nothing_stays_on_is_said_to_be_unstable():
+    """Under half the load the peak is unstable; time integration comes to the motion before it."""
+    model = sprung(60.0, 1.0)
+    omega = 2.0 * np.pi * np.array([158.02, 158.394])
+    exact = ss.exact_response(model, omega, observe=["left.y"])
+    balance = ss.forced_response(model, omega, 31, observe=["left.y"])
+    np.testing.assert_allclose(balance.amplitude("left.y"), exact.amplitude("left.y"), rtol=1e-5)
+    assert list(balance.stable) == [True, False]
+    assert list(exact.stable) == [True, False]
+    runs = [ss.transient(model, omega=one, periods=1000, tolerance=1e-8, keep=1) for one in omega]
+    assert [run.status for run in runs] == ["settled", "not settled"]
+    assert balance.amplitude("left.y")[0] == pytest.approx(runs[0].amplitude("left.y"), rel=1e-6)
+
+
 @pytest.mark.parametrize(
     ("parameter", "step"),
     [("friction", 1e-4), ("tangential_stiffness", 30.0), ("normal_stiffness", 30.0)],

@@ -247,6 +247,8 @@ def test_refused_bodies():
         damper(ss.ContactPoint((0.0, 1.0), dofs=["x", "z"]), of=bar)
     with pytest.raises(ss.ModelError, match="inertia"):
         ss.RigidBody(1.0, [1.0, 2.0], load=(0.0, 0.0, 1.0))
+    with pytest.raises(ss.ModelError, match="a mass of 0 has no centrifugal load"):
+        replace(WEDGE, mass=0.0, load=ss.Centrifugal(radius=0.4, speed=900.0))
 
 
 @pytest.mark.parametrize("name", DAMPERS)

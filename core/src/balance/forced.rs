@@ -236,10 +236,8 @@ impl<'a> ForcedBalance<'a> {
         if !failed || resolution.samples.is_some() || self.follows() {
             return Ok(solved);
         }
-        if start.is_none() {
-            if let Some(point) = self.solve_by_fewer(resolution, omega)? {
-                return Ok(point);
-            }
+        if let Some(point) = self.solve_by_fewer(resolution, omega)? {
+            return Ok(point);
         }
         if solved.status != PointStatus::Stalled {
             return Ok(solved);

@@ -40,6 +40,11 @@ class _TwoFaces(Damper):
                 positive(one, "", f"{self._entry}: {key}")
         if not isinstance(self.load, Centrifugal):
             set_fields(self, load=physical_number(self.load, "N", f"{self._entry}: load"))
+        elif not self.mass:
+            raise ModelError(
+                f"{self._entry}: a mass of 0 has no centrifugal load, and nothing presses its "
+                "faces; give the load in N, or a small mass"
+            )
 
     @property
     def _entry(self) -> str:

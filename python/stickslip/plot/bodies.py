@@ -60,7 +60,7 @@ def damper_drawing(ax: Axes, /, damper: Damper, **options: Unpack[Drawing]) -> N
         place = _at(shifts[name] - [0.0, 0.4 * size])
         ax.annotate(f"{name}{mass}", place, ha="center", va="center")
     ax.set_aspect("equal")
-    ax.margins(0.15)
+    ax.margins(0.3, 0.15)  # what stands beside a face counts in no limit
     if measured:
         ax.set(xlabel="x [m]", ylabel="y [m]")
     else:

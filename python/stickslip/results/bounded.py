@@ -60,9 +60,10 @@ class Bounded(ContactMotion):
     def unique(self) -> NDArray[np.str_]:
         """Whether each vibration is the same for all residual tractions, of the observed dofs.
 
-        "yes", "no" (it depends on them), "shakedown" (it does, and the motion itself has pushed a
-        contact in one sense until it slips no more), "not found" (of an exact orbit: one of those
-        that bound it was not found) or "not asked".
+        "yes" (the bounds coincide: no other vibration was found, and where `guaranteed` is true
+        there is none), "no" (it depends on them), "shakedown" (it does, and the motion itself has
+        pushed a contact in one sense until it slips no more), "not found" (of an exact orbit: one
+        of those that bound it was not found) or "not asked".
         """
         return constant(np.array(UNIQUE)[self.arrays.unique])
 
