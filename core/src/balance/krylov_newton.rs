@@ -23,6 +23,9 @@ const USEFUL: f64 = 0.5;
 /// Tolerance of what damping couples within a product, against that of the whole.
 const WITHIN: f64 = 1e-2;
 
+/// Sums of a scalar product.
+const SIDE_BY_SIDE: usize = 8;
+
 /// What a product with `I − G ∂Q` is made of.
 #[derive(Clone, Copy)]
 pub(super) struct Products<'a> {
@@ -46,14 +49,8 @@ pub(super) struct KrylovNewton {
 impl KrylovNewton {
     /// Of the points of contacts with a tangent.
     pub(super) fn new(compliance: &dyn Compliance, active: &[usize]) -> Self {
-        let shapes = compliance.contact_modes().map_or_else(Mat::new, |modes| {
-            let all = modes.contacts();
-            let mut shapes = Mat::zeros(all.nrows(), active.len());
-            for (mut own, &point) in shapes.col_iter_mut().zip(active) {
-                own.copy_from(all.col(point));
-            }
-            shapes
-        });
+        let modes = compliance.contact_modes();
+        let shapes = modes.map_or_else(Mat::new, |modes| modes.of_contacts(active));
         Self { points: active.to_vec(), shapes }
     }
 
@@ -132,7 +129,6 @@ impl KrylovNewton {
         // What does not depend on the motion follows from what does: dU = r + R' dω + G ∂Q dU.
         let mut rest = border.row[..count].to_vec();
         self.points.iter().for_each(|point| rest[point * slots..(point + 1) * slots].fill(0.0));
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let mut column = divided(self.of_points(border.rate, slots));
         let unit = norm(&column).recip().min(border.omega);
         column.iter_mut().for_each(|c| *c *= unit);
@@ -207,12 +203,23 @@ impl KrylovNewton {
             let size = load.value.len();
             let rows = load.tangent.chunks_exact(size).zip(&mut out[first..first + size]);
             for (row, out) in rows {
-                *out += row.iter().zip(&v[first..first + size]).map(|(t, v)| t * v).sum::<f64>();
+                *out += dot(row, &v[first..first + size]);
             }
             first += size;
         }
         debug_assert_eq!(first, self.points.len() * loads.slots);
     }
+}
+
+/// Scalar product, by sums that go through the processor side by side.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let (mut a, mut b) = (a.chunks_exact(SIDE_BY_SIDE), b.chunks_exact(SIDE_BY_SIDE));
+    let mut sums = [0.0; SIDE_BY_SIDE];
+    for (a, b) in (&mut a).zip(&mut b) {
+        sums.iter_mut().zip(a.iter().zip(b)).for_each(|(sum, (a, b))| *sum += a * b);
+    }
+    let rest = a.remainder().iter().zip(b.remainder());
+    sums.iter().sum::<f64>() + rest.map(|(a, b)| a * b).sum::<f64>()
 }
 
 /// Series of all points, one after the other.

@@ -157,6 +157,14 @@ impl ContactModes {
         self.contacts.as_ref()
     }
 
+    /// Ψᵀ of some contacts, modes × contacts.
+    #[must_use]
+    pub fn of_contacts(&self, contacts: &[usize]) -> Mat<f64> {
+        let mut own = Mat::zeros(self.modes(), contacts.len());
+        gather(self.contacts(), contacts, &mut own);
+        own
+    }
+
     /// The dynamic stiffness at a frequency [rad/s], of harmonics with their slots.
     ///
     /// # Errors
@@ -239,9 +247,7 @@ impl ContactModes {
         }
         let mut panel = Mat::zeros(contacts.nrows(), PANEL.min(loaded.len()));
         for own in loaded.chunks(PANEL) {
-            for (mut column, &j) in panel.col_iter_mut().zip(own) {
-                column.copy_from(contacts.col(j));
-            }
+            gather(contacts, own, &mut panel);
             let loads = Mat::from_fn(own.len(), slip_load.nrows(), |j, i| slip_load[(i, own[j])]);
             let panel = panel.as_ref().subcols(0, own.len());
             matmul(forces.as_mut(), Accum::Add, panel, loads.as_ref(), 1.0, Par::Seq);
@@ -389,6 +395,16 @@ impl ModalOrders {
                 let y = inverse[j] * c64::new(column[*slot], -column[slot + 1]);
                 (column[*slot], column[slot + 1]) = (y.re, -y.im);
             }
+        }
+    }
+}
+
+/// Copies some columns side by side into a matrix that is no narrower.
+fn gather(from: MatRef<'_, f64>, columns: &[usize], into: &mut Mat<f64>) {
+    for (at, &j) in columns.iter().enumerate() {
+        match from.col(j).try_as_col_major() {
+            Some(column) => into.col_as_slice_mut(at).copy_from_slice(column.as_slice()),
+            None => into.col_mut(at).copy_from(from.col(j)),
         }
     }
 }
