@@ -85,7 +85,10 @@ impl Condensed<'_> {
         let active = self.active_points();
         let compliance = self.model.compliance();
         self.factor = match (&mut self.linear, compliance.ring()) {
-            (Linear::Modal(_), _) => Some(Factor::Krylov(self.krylov_newton())),
+            (Linear::Modal(orders), _) => {
+                let rough = (!self.fine).then_some(&*orders);
+                Some(Factor::Krylov(KrylovNewton::new(compliance, &active, rough)))
+            }
             (Linear::Ring { orders, .. }, Some(ring)) => {
                 Some(if RingNewton::suits(ring, harmonics.slots(), active.len()) {
                     Factor::Ring(Box::new(RingNewton::new(
@@ -141,7 +144,7 @@ impl Condensed<'_> {
 
     /// The contacts that yield, as products with the modes see them.
     fn krylov_newton(&self) -> KrylovNewton {
-        KrylovNewton::new(self.model.compliance(), &self.active_points())
+        KrylovNewton::new(self.model.compliance(), &self.active_points(), None)
     }
 
     /// Whether a direction goes so far in the mean that nothing holds it, however far it goes.

@@ -11,13 +11,19 @@ use super::ports::{HarmonicLoad, Ports};
 use crate::solve::{gmres, KrylovSettings};
 use crate::Error;
 use faer::linalg::matmul::matmul;
+use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::linalg::solvers::Solve as _;
 use faer::{c64, Accum, Mat, MatRef, Par};
+use std::sync::OnceLock;
 
 /// Products with the coupling of the damping: far more than it takes.
 const MOST_PRODUCTS: usize = 400;
 /// Contacts with a load that are gathered at once: their shapes stay in the cache.
 const PANEL: usize = 32;
+/// The lowest of so many modes move as they do, the others follow their loads at once, …
+const SLOWEST: usize = 10;
+/// … where inertia and damping change their answers by no more than this.
+const QUASI_STATIC: f64 = 5e-3;
 /// Least modulus of a dynamic stiffness, relative to the squared frequency.
 const FLOOR: f64 = 1e-9;
 
@@ -33,6 +39,8 @@ pub struct ContactModes {
     moving: Vec<bool>,
     /// Whether the damping couples a mode to others.
     coupled: Vec<bool>,
+    /// Flexibility of all but the slowest modes at the contacts [m/N].
+    flexibility: OnceLock<Mat<f64>>,
     /// Modal mass: 1, or 0 of what DOFs without mass add.
     inertia: Vec<f64>,
     /// Modal stiffness.
@@ -125,6 +133,7 @@ impl ContactModes {
             contacts,
             moving,
             coupled,
+            flexibility: OnceLock::new(),
             inertia,
             omega_squared,
             loads: ports.loads.iter().map(project).collect(),
@@ -163,6 +172,65 @@ impl ContactModes {
         let mut own = Mat::zeros(self.modes(), contacts.len());
         gather(self.contacts(), contacts, &mut own);
         own
+    }
+
+    /// Ψᵀ of some contacts in the slowest modes, and the flexibility of all others between these contacts;
+    /// nothing where the others do not follow their loads at once. What the two answer differs from
+    /// the whole by some thousandths of that flexibility.
+    #[must_use]
+    pub fn quasi_static(
+        &self,
+        at: &ModalOrders,
+        contacts: &[usize],
+    ) -> Option<(Mat<f64>, Mat<f64>)> {
+        let slow = self.modes() / SLOWEST;
+        let one = c64::new(1.0, 0.0);
+        let follows = |inverse: &[c64]| {
+            let others = inverse.iter().zip(&self.omega_squared).skip(slow);
+            others.map(|(z, k)| (z * *k - one).norm()).all(|change| change <= QUASI_STATIC)
+        };
+        if self.is_coupled() || !at.orders.iter().all(|(.., inverse)| follows(inverse)) {
+            return None;
+        }
+        let flexibility = self.flexibility.get_or_init(|| self.flexibility_behind(slow));
+        let mut shapes = Mat::zeros(slow, contacts.len());
+        gather(self.contacts().subrows(0, slow), contacts, &mut shapes);
+        let mut own = Mat::zeros(contacts.len(), contacts.len());
+        for (at, &j) in contacts.iter().enumerate() {
+            let column = flexibility.col_as_slice(j);
+            let entries = own.col_as_slice_mut(at).iter_mut().zip(contacts);
+            entries.for_each(|(entry, &i)| *entry = column[i]);
+        }
+        Some((shapes, own))
+    }
+
+    /// `Σ ψ ψᵀ / ω²` of all modes behind the first ones.
+    fn flexibility_behind(&self, first: usize) -> Mat<f64> {
+        let (count, size) = (self.modes() - first, self.contacts.ncols());
+        let mut out = Mat::zeros(size, size);
+        // A part of the modes at a time needs no copy of the whole.
+        for start in (0..count).step_by(size.clamp(1, 256)) {
+            let rows = (count - start).min(size.clamp(1, 256));
+            let own = self.contacts().subrows(first + start, rows);
+            let carried = Mat::from_fn(rows, size, |j, i| {
+                own[(j, i)] / self.omega_squared[first + start + j]
+            });
+            triangular::matmul(
+                out.as_mut(),
+                BlockStructure::TriangularLower,
+                Accum::Add,
+                own.transpose(),
+                BlockStructure::Rectangular,
+                carried.as_ref(),
+                BlockStructure::Rectangular,
+                1.0,
+                Par::Seq,
+            );
+        }
+        for j in 0..size {
+            (0..j).for_each(|i| out[(i, j)] = out[(j, i)]);
+        }
+        out
     }
 
     /// The dynamic stiffness at a frequency [rad/s], of harmonics with their slots.
