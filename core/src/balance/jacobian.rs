@@ -155,11 +155,6 @@ impl Condensed<'_> {
         harmonics.has_mean() && mean.fold(0.0, f64::max) > FREE * motion
     }
 
-    /// Whether nothing holds the mean of many contacts in the last direction that was asked for.
-    pub(super) fn is_lost(&self) -> bool {
-        self.free && matches!(self.linear, Linear::Modal(_))
-    }
-
     /// Points of the contacts that yield.
     fn active_points(&self) -> Vec<usize> {
         (self.loads.iter().zip(self.model.points()))
@@ -313,6 +308,11 @@ impl Parametrised for Condensed<'_> {
                 self.softened = (scale < 1.0).then(|| (scale, soften()));
             }
         }
+    }
+
+    /// Whether nothing holds the mean of many contacts in the last direction that was asked for.
+    fn is_lost(&self) -> bool {
+        self.free && matches!(self.linear, Linear::Modal(_))
     }
 
     fn easy_start(&self, x: &mut [f64]) {
