@@ -20,6 +20,12 @@ use faer::Mat;
 /// Share of the largest contact force below which a contact counts as carrying nothing.
 const CARRIES_NOTHING: f64 = 1e-3;
 
+/// Mean of a direction, relative to the motion, that is the walk of a body which contacts alone hold: what
+/// holds it elastically does so within a few times its motion.
+const WALKS: f64 = 1e4;
+/// Natural frequency without contacts, relative to that with all of them stuck, that is none.
+const RIGID: f64 = 1e-4;
+
 /// Loss, relative to the stiffness of contacts, whose end hardly moves a solution any more.
 const LEAST_LOSS: f64 = 1e-12;
 
@@ -152,7 +158,18 @@ impl Condensed<'_> {
         let harmonics = self.table.harmonics();
         let motion = self.sizes.iter().copied().fold(0.0, f64::max);
         let mean = step.iter().step_by(harmonics.slots()).map(|mean| mean.abs());
-        harmonics.has_mean() && mean.fold(0.0, f64::max) > FREE * motion
+        let far = if self.may_walk() { WALKS } else { FREE };
+        harmonics.has_mean() && mean.fold(0.0, f64::max) > far * motion
+    }
+
+    /// Whether many contacts are all that holds a body: under a load beyond what friction keeps while it
+    /// vibrates it walks, and no motion repeats.
+    fn may_walk(&self) -> bool {
+        let compliance = self.model.compliance();
+        let lowest = |frequencies: &[f64]| frequencies.first().copied();
+        let (free, stuck) = (compliance.free_frequencies(), compliance.stuck_frequencies());
+        matches!(self.linear, Linear::Modal(_))
+            && lowest(free).zip(lowest(stuck)).is_some_and(|(free, stuck)| free <= RIGID * stuck)
     }
 
     /// Points of the contacts that yield.
