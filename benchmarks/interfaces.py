@@ -209,8 +209,8 @@ def main() -> None:
                 measured(kind, count, *layer(count))
             else:
                 model, omega = block(count)
-                print(f"        one symmetric eigenproblem: {eigenproblem(model):.2f} s")
                 measured(kind, count, model, omega[: given.points], **MARCHED)
+                print(f"        one symmetric eigenproblem: {eigenproblem(model):.2f} s")
 
 
 if __name__ == "__main__":

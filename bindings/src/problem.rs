@@ -89,6 +89,8 @@ impl Problem {
         let loads = harmonic_loads(forces);
         Self::of(py, move || {
             let structure = Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref())?;
+            // The decomposition needs the room.
+            drop((mass, damping, stiffness));
             Model::new(structure.with_law(proportional), contacts, loads)
         })
     }

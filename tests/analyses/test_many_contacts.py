@@ -93,3 +93,18 @@ def test_contacts_that_slip_and_lift_off_are_those_of_receptances() -> None:
     opens = np.array([newton.open_fraction(c) for c in range(40)])
     assert 0.1 < np.mean(slip > 0.0) < 0.95
     assert opens.max() > 0.0
+
+
+def test_a_body_that_walks_says_so_early() -> None:
+    """A block on friction alone, pushed by more than friction keeps while it vibrates."""
+    plate = friction_plate(40)
+    structure = plate.structure
+    names = list(structure.dofs)
+    loose = structure.stiffness - 4e4 * np.eye(len(names))
+    block = ss.Structure(structure.mass, loose, ss.Rayleigh(mass=30.0, stiffness=0.0), names)
+    forces = [*plate.forces, ss.Force("0.x", 400.0, harmonic=0)]
+    model = ss.Model(block, plate.contacts, forces)
+    options = {"evaluation": "marched", "samples": 64, "observe": ["0.x"], "stability": False}
+    frf = ss.forced_response(model, [310.0], 3, **options)
+    assert list(frf.status) == ["free"]
+    assert frf.counters["evaluations"] < 400

@@ -156,3 +156,44 @@ def test_what_does_not_exist_is_named(tmp_path):
             call()
         assert says in str(error.value)
         assert "\n" not in str(error.value)
+
+
+def bulk_data(wide: bool, system: str = "") -> str:
+    """Return two bricks of Nastran, one upon the other, with the nodes between them in sets."""
+    lines, corners = ["SOL 103", "CEND", "BEGIN BULK"], ((0, 0), (2, 0), (2, 3), (0, 3))
+    for base, height in ((10, 0.0), (20, 1.0)):
+        ids = range(base + 1, base + 9)
+        places = [(x, y, height + z) for z in (0.0, 1.0) for x, y in corners]
+        for number, (x, y, z) in zip(ids, places, strict=True):
+            if wide:
+                lines.append(f"GRID*   {number:16d}{system:>16}{x:16.8f}{y:16.8f}*G{number}")
+                lines.append(f"*G{number:<6d}{z:16.8f}")
+            else:
+                lines.append(f"GRID    {number:8d}{system:>8}{x:8.3f}{y:8.3f}{z:8.3f}")
+        own = "".join(f"{number:8d}" for number in ids)
+        lines += [f"CHEXA   {base:8d}{1:8d}{own[:48]}+", f"+       {own[48:]}"]
+    first = f"SET1    {2:8d}{21:8d}{22:8d}{23:8d}".ljust(72)
+    lines += ["$ between them", "SET1,1,15,THRU,18", f"{first}+S"]
+    return "\n".join([*lines, f"+S      {24:8d}", "SET1,3,10,20", "ENDDATA", ""])
+
+
+@pytest.mark.parametrize("wide", [False, True])
+def test_sets_of_nastran_make_an_interface(tmp_path, wide):
+    pytest.importorskip("meshio")
+    path = tmp_path / "joint.bdf"
+    path.write_text(bulk_data(wide))
+    mesh = ss.read_mesh(path)
+    # SET1 3 is one of elements.
+    assert sorted(mesh.node_sets) == ["SET1 1", "SET1 2"]
+    interface = ss.ContactInterface.from_surfaces(mesh, "SET1 1", mesh, "SET1 2")
+    assert interface.dofs[:3] == ("15.1", "15.2", "15.3")
+    assert interface.area == pytest.approx(6.0)
+    np.testing.assert_allclose(interface.normals, np.tile([0, 0, 1.0], (4, 1)), atol=1e-15)
+
+
+def test_coordinates_of_another_system_of_nastran_are_refused(tmp_path):
+    pytest.importorskip("meshio")
+    path = tmp_path / "joint.bdf"
+    path.write_text(bulk_data(False, system="4"))
+    with pytest.raises(ss.ModelError, match="GRID 11: its coordinates are those of system 4"):
+        ss.read_mesh(path)

@@ -13,7 +13,9 @@ use super::{ExactOrbits, Kept, Progress};
 use crate::contact::Residual;
 use crate::fourier::{Harmonics, SampleTable};
 use crate::model::Model;
-use crate::solve::{broyden, homotopy, newton, norm, Outcome, Report, System as _};
+use crate::solve::{
+    broyden, homotopy, newton, norm, Outcome, Parametrised as _, Report, System as _,
+};
 use crate::timing::Profile;
 use crate::Error;
 use std::collections::BTreeMap;
@@ -414,6 +416,10 @@ impl<'a> ForcedBalance<'a> {
             if !has_failed(&followed) {
                 (report.outcome, report.residual) = (followed.outcome, followed.residual);
                 *x = along;
+                break;
+            }
+            if equations.is_lost() {
+                report.outcome = Outcome::Singular;
                 break;
             }
         }

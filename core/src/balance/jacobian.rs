@@ -20,6 +20,12 @@ use faer::Mat;
 /// Share of the largest contact force below which a contact counts as carrying nothing.
 const CARRIES_NOTHING: f64 = 1e-3;
 
+/// Mean of a direction, relative to the motion, that is the walk of a body which contacts alone hold: what
+/// holds it elastically does so within a few times its motion.
+const WALKS: f64 = 1e4;
+/// Natural frequency without contacts, relative to that with all of them stuck, that is none.
+const RIGID: f64 = 1e-4;
+
 /// Loss, relative to the stiffness of contacts, whose end hardly moves a solution any more.
 const LEAST_LOSS: f64 = 1e-12;
 
@@ -85,7 +91,10 @@ impl Condensed<'_> {
         let active = self.active_points();
         let compliance = self.model.compliance();
         self.factor = match (&mut self.linear, compliance.ring()) {
-            (Linear::Modal(_), _) => Some(Factor::Krylov(self.krylov_newton())),
+            (Linear::Modal(orders), _) => {
+                let rough = (!self.fine).then_some(&*orders);
+                Some(Factor::Krylov(KrylovNewton::new(compliance, &active, rough)))
+            }
             (Linear::Ring { orders, .. }, Some(ring)) => {
                 Some(if RingNewton::suits(ring, harmonics.slots(), active.len()) {
                     Factor::Ring(Box::new(RingNewton::new(
@@ -141,7 +150,7 @@ impl Condensed<'_> {
 
     /// The contacts that yield, as products with the modes see them.
     fn krylov_newton(&self) -> KrylovNewton {
-        KrylovNewton::new(self.model.compliance(), &self.active_points())
+        KrylovNewton::new(self.model.compliance(), &self.active_points(), None)
     }
 
     /// Whether a direction goes so far in the mean that nothing holds it, however far it goes.
@@ -149,12 +158,18 @@ impl Condensed<'_> {
         let harmonics = self.table.harmonics();
         let motion = self.sizes.iter().copied().fold(0.0, f64::max);
         let mean = step.iter().step_by(harmonics.slots()).map(|mean| mean.abs());
-        harmonics.has_mean() && mean.fold(0.0, f64::max) > FREE * motion
+        let far = if self.may_walk() { WALKS } else { FREE };
+        harmonics.has_mean() && mean.fold(0.0, f64::max) > far * motion
     }
 
-    /// Whether nothing holds the mean of many contacts in the last direction that was asked for.
-    pub(super) fn is_lost(&self) -> bool {
-        self.free && matches!(self.linear, Linear::Modal(_))
+    /// Whether many contacts are all that holds a body: under a load beyond what friction keeps while it
+    /// vibrates it walks, and no motion repeats.
+    fn may_walk(&self) -> bool {
+        let compliance = self.model.compliance();
+        let lowest = |frequencies: &[f64]| frequencies.first().copied();
+        let (free, stuck) = (compliance.free_frequencies(), compliance.stuck_frequencies());
+        matches!(self.linear, Linear::Modal(_))
+            && lowest(free).zip(lowest(stuck)).is_some_and(|(free, stuck)| free <= RIGID * stuck)
     }
 
     /// Points of the contacts that yield.
@@ -310,6 +325,11 @@ impl Parametrised for Condensed<'_> {
                 self.softened = (scale < 1.0).then(|| (scale, soften()));
             }
         }
+    }
+
+    /// Whether nothing holds the mean of many contacts in the last direction that was asked for.
+    fn is_lost(&self) -> bool {
+        self.free && matches!(self.linear, Linear::Modal(_))
     }
 
     fn easy_start(&self, x: &mut [f64]) {

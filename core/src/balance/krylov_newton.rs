@@ -8,7 +8,8 @@
 use super::slip_jacobian::{Border, Loads};
 use crate::solve::{gmres, norm, KrylovSettings};
 use crate::structure::{Compliance, ContactModes, ModalOrders};
-use faer::{Mat, MatRef};
+use faer::linalg::matmul::matmul;
+use faer::{Accum, Mat, MatRef, Par};
 
 /// What a direction may leave of the residual: Newton's method takes it from there.
 const FORCING: f64 = 1e-3;
@@ -22,6 +23,9 @@ const MOST_PRODUCTS: usize = 400;
 const USEFUL: f64 = 0.5;
 /// Tolerance of what damping couples within a product, against that of the whole.
 const WITHIN: f64 = 1e-2;
+
+/// Sums of a scalar product.
+const SIDE_BY_SIDE: usize = 8;
 
 /// What a product with `I − G ∂Q` is made of.
 #[derive(Clone, Copy)]
@@ -41,20 +45,26 @@ pub(super) struct KrylovNewton {
     points: Vec<usize>,
     /// Ψᵀ of them, modes × points.
     shapes: Mat<f64>,
+    /// Flexibility between them of modes that are none of these, as they follow their loads at once.
+    flexibility: Option<Mat<f64>>,
 }
 
 impl KrylovNewton {
-    /// Of the points of contacts with a tangent.
-    pub(super) fn new(compliance: &dyn Compliance, active: &[usize]) -> Self {
-        let shapes = compliance.contact_modes().map_or_else(Mat::new, |modes| {
-            let all = modes.contacts();
-            let mut shapes = Mat::zeros(all.nrows(), active.len());
-            for (mut own, &point) in shapes.col_iter_mut().zip(active) {
-                own.copy_from(all.col(point));
-            }
-            shapes
-        });
-        Self { points: active.to_vec(), shapes }
+    /// Of the points of contacts with a tangent; with the harmonics in `rough`, fast modes follow their
+    /// loads at once: directions are corrected by what follows them.
+    pub(super) fn new(
+        compliance: &dyn Compliance,
+        active: &[usize],
+        rough: Option<&ModalOrders>,
+    ) -> Self {
+        let points = active.to_vec();
+        let Some(modes) = compliance.contact_modes() else {
+            return Self { points, shapes: Mat::new(), flexibility: None };
+        };
+        match rough.and_then(|orders| modes.quasi_static(orders, active)) {
+            Some((shapes, flexibility)) => Self { points, shapes, flexibility: Some(flexibility) },
+            None => Self { points, shapes: modes.of_contacts(active), flexibility: None },
+        }
     }
 
     /// Newton's direction, and the number of products that it took; nothing if there is none, or the
@@ -81,7 +91,12 @@ impl KrylovNewton {
             moved.copy_from_slice(v);
             scaled(&mut moved, &|size| size);
             let motion = self.answered(products, &moved, WITHIN * tolerance, &mut load);
-            let motion = ContactModes::displace(self.shapes.as_ref(), motion.as_ref());
+            let mut motion = ContactModes::displace(self.shapes.as_ref(), motion.as_ref());
+            if let Some(flexibility) = &self.flexibility {
+                let load = MatRef::from_column_major_slice(&load, slots, self.points.len());
+                let flexibility = flexibility.as_ref();
+                matmul(motion.as_mut(), Accum::Add, load, flexibility, 1.0, Par::Seq);
+            }
             for (out, own) in out.chunks_exact_mut(slots).zip(motion.col_iter()) {
                 out.iter_mut().zip(own.iter()).for_each(|(out, u)| *out = *u);
             }
@@ -100,7 +115,7 @@ impl KrylovNewton {
         // The others follow from step = rhs + G ∂Q step.
         step.copy_from_slice(rhs);
         if self.points.len() * slots < step.len() {
-            let motion = self.answered(products, &solution, WITHIN * tolerance, &mut load);
+            let motion = self.answered_by_all(products, &solution, WITHIN * tolerance, &mut load);
             let motion = ContactModes::displace(modes.contacts(), motion.as_ref());
             for (step, own) in step.chunks_exact_mut(slots).zip(motion.col_iter()) {
                 step.iter_mut().zip(own.iter()).for_each(|(step, u)| *step += u);
@@ -132,7 +147,6 @@ impl KrylovNewton {
         // What does not depend on the motion follows from what does: dU = r + R' dω + G ∂Q dU.
         let mut rest = border.row[..count].to_vec();
         self.points.iter().for_each(|point| rest[point * slots..(point + 1) * slots].fill(0.0));
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let mut column = divided(self.of_points(border.rate, slots));
         let unit = norm(&column).recip().min(border.omega);
         column.iter_mut().for_each(|c| *c *= unit);
@@ -175,6 +189,29 @@ impl KrylovNewton {
         Some((step, report.products))
     }
 
+    /// [`KrylovNewton::answered`], of all modes.
+    fn answered_by_all(
+        &self,
+        products: Products<'_>,
+        step: &[f64],
+        tolerance: f64,
+        load: &mut [f64],
+    ) -> Mat<f64> {
+        if self.flexibility.is_none() {
+            return self.answered(products, step, tolerance, load);
+        }
+        load.fill(0.0);
+        self.add_tangents(products.loads, step, load);
+        let (modes, slots) = (products.modes, products.loads.slots);
+        let mut whole = Mat::zeros(slots, modes.contacts().ncols());
+        for (own, &point) in load.chunks_exact(slots).zip(&self.points) {
+            whole.col_as_slice_mut(point).copy_from_slice(own);
+        }
+        let mut motion = ContactModes::excite(modes.contacts(), whole.as_ref());
+        modes.answer(products.orders, &mut motion, tolerance);
+        motion
+    }
+
     /// Modal coordinates of the motion that the tangents answer a step of the active points with.
     fn answered(
         &self,
@@ -207,12 +244,23 @@ impl KrylovNewton {
             let size = load.value.len();
             let rows = load.tangent.chunks_exact(size).zip(&mut out[first..first + size]);
             for (row, out) in rows {
-                *out += row.iter().zip(&v[first..first + size]).map(|(t, v)| t * v).sum::<f64>();
+                *out += dot(row, &v[first..first + size]);
             }
             first += size;
         }
         debug_assert_eq!(first, self.points.len() * loads.slots);
     }
+}
+
+/// Scalar product, by sums that go through the processor side by side.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let (mut a, mut b) = (a.chunks_exact(SIDE_BY_SIDE), b.chunks_exact(SIDE_BY_SIDE));
+    let mut sums = [0.0; SIDE_BY_SIDE];
+    for (a, b) in (&mut a).zip(&mut b) {
+        sums.iter_mut().zip(a.iter().zip(b)).for_each(|(sum, (a, b))| *sum += a * b);
+    }
+    let rest = a.remainder().iter().zip(b.remainder());
+    sums.iter().sum::<f64>() + rest.map(|(a, b)| a * b).sum::<f64>()
 }
 
 /// Series of all points, one after the other.

@@ -94,10 +94,21 @@ impl Linear {
                 let Some(modes) = compliance.contact_modes() else { return Ok(()) };
                 let slots = |order| harmonics.slot(order).map(|slot| (order, slot));
                 *orders = modes.orders(harmonics.orders().filter_map(slots), omega)?;
-                let mut motion = Mat::zeros(harmonics.slots(), modes.modes());
-                modes.add_load(orders, &mut motion);
-                modes.answer(orders, &mut motion, EXACT);
-                add_motion(modes, &motion, stuck);
+                // Harmonics without a load leave the stuck contacts where they are.
+                let forced = compliance.forced_harmonics();
+                let kept = harmonics.orders().filter(|order| forced.contains(order));
+                let own = kept.filter_map(|order| Some((order, harmonics.slot(order)?)));
+                for (order, slot) in own {
+                    let rows = if order == 0 { 1 } else { 2 };
+                    let at = modes.orders([(order, 0)].into_iter(), omega)?;
+                    let mut motion = Mat::zeros(rows, modes.modes());
+                    modes.add_load(&at, &mut motion);
+                    modes.answer(&at, &mut motion, EXACT);
+                    let motion = ContactModes::displace(modes.contacts(), motion.as_ref());
+                    for (point, own) in stuck.chunks_exact_mut(harmonics.slots()).enumerate() {
+                        (0..rows).for_each(|row| own[slot + row] = motion[(row, point)]);
+                    }
+                }
             }
             Self::Ring { orders, slopes } => {
                 orders.clear();

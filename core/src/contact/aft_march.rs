@@ -7,7 +7,7 @@ use super::periodic_march::SLOW;
 use super::restart::Restart;
 use super::samples::Samples;
 use super::{Aft, AssumedStart, ContactLaw, Element, Motion, Residual, Unslipped};
-use faer::{Mat, MatRef};
+use faer::Mat;
 use std::f64::consts::TAU;
 use std::ops::Deref;
 
@@ -143,7 +143,7 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
         let mut last_change = f64::INFINITY;
         let (mut pushes, mut jump): (usize, Option<(Vec<f64>, f64)>) = (0, None);
         loop {
-            let mut lap = (pushes >= PUSHES).then(|| Mat::<f64>::identity(size, size));
+            let mut lap = (pushes >= PUSHES).then(|| Lap::new(size));
             round.slipping = vec![0.0; count];
             round.work = vec![0.0; count];
             let before = step.state.clone();
@@ -156,8 +156,7 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
                 let derived = account || !round.slipped || lap.is_some();
                 self.advance(samples, n, &mut step, derived);
                 if let Some(lap) = &mut lap {
-                    *lap =
-                        MatRef::from_row_major_slice(&step.jacobian.by_state, size, size) * &*lap;
+                    lap.advance(&step.jacobian.by_state);
                 }
                 round.slipped = round.slipped || departs(&step);
                 largest = step.state.iter().fold(largest, |most, z| most.max(z.abs()));
@@ -175,7 +174,7 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
             step.force.iter_mut().for_each(|f| *f *= samples.sign);
             let change = step.state.iter().zip(&before).map(|(a, b)| (a - b).abs());
             let change = change.fold(0.0, f64::max);
-            let slips = lap.as_ref().is_none_or(|lap| *lap != Mat::<f64>::identity(size, size));
+            let slips = lap.as_ref().is_none_or(|lap| !is_identity(&lap.by, size));
             let small = |change: f64| change <= SMALL * largest;
             // A jump that was not small is made sure of by another one.
             let unsure = jump.take().filter(|(_, by)| !small(*by));
@@ -193,7 +192,8 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
             }
             let restart = match lap {
                 Some(lap) => {
-                    let restart = Restart::at_fixed_point(&(samples.sign * lap));
+                    let mirrored = |i, j| samples.sign * lap.by[i * size + j];
+                    let restart = Restart::at_fixed_point(&Mat::from_fn(size, size, mirrored));
                     jump = restart.is_some().then(|| (step.state.clone(), change));
                     restart.unwrap_or(Restart::GoesOn)
                 }
@@ -232,7 +232,7 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
         rate.follow(&step.jacobian, None, basis(0));
         rate.begin(&step.jacobian, &begun.rate);
         let weight = 2.0 / samples.count as f64;
-        let mut sum = vec![0.0; slots];
+        let (mut sum, mut force_by_state) = (vec![0.0; slots], Vec::new());
         let mut before = (step.state.clone(), rate.clone());
         for (round, restart) in rounds.iter().enumerate() {
             let last = round + 1 == rounds.len();
@@ -245,7 +245,7 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
                     sum.iter_mut().zip(basis(n - 1)).for_each(|(sum, b)| *sum += weight * b);
                     rate.add_direct(&step.jacobian, weight, basis(n - 1), out);
                 }
-                let force_by_state = step.jacobian.force_by_state.clone();
+                force_by_state.clone_from(&step.jacobian.force_by_state);
                 self.advance(samples, n, &mut step, true);
                 let wraps = n == samples.count;
                 let changes = !is_elastic(&step.jacobian, &state_stiffness)
@@ -316,6 +316,41 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
         }
         (states, forces)
     }
+}
+
+/// Derivative of a part of a round: numbers of state by those that it begins with, row by row.
+struct Lap {
+    size: usize,
+    by: Vec<f64>,
+    room: Vec<f64>,
+}
+
+impl Lap {
+    fn new(size: usize) -> Self {
+        let by: Vec<f64> = (0..size * size).map(|at| own(at, size)).collect();
+        Self { size, room: by.clone(), by }
+    }
+
+    /// Goes on by a step with a derivative.
+    fn advance(&mut self, step: &[f64]) {
+        let size = self.size;
+        if is_identity(step, size) {
+            return;
+        }
+        for (at, entry) in self.room.iter_mut().enumerate() {
+            let (row, column) = (at / size * size, at % size);
+            *entry = (0..size).map(|k| step[row + k] * self.by[k * size + column]).sum();
+        }
+        std::mem::swap(&mut self.by, &mut self.room);
+    }
+}
+
+fn own(at: usize, size: usize) -> f64 {
+    f64::from(u8::from(at / size == at % size))
+}
+
+fn is_identity(matrix: &[f64], size: usize) -> bool {
+    matrix.iter().enumerate().all(|(at, entry)| *entry == own(at, size))
 }
 
 fn scaled(values: &[f64], factor: f64) -> Vec<f64> {

@@ -17,13 +17,15 @@ pub(super) struct Rate {
     stiffness: Mat<f64>,
     state_stiffness: Mat<f64>,
     value: Vec<f64>,
+    /// Room for the next one.
+    next: Vec<f64>,
 }
 
 impl Rate {
     /// No derivative yet, in `slots` coefficients per displacement.
     pub(super) fn new(stiffness: Mat<f64>, state_stiffness: Mat<f64>, slots: usize) -> Self {
         let value = vec![0.0; state_stiffness.nrows() * stiffness.nrows() * slots];
-        Self { slots, stiffness, state_stiffness, value }
+        Self { slots, stiffness, state_stiffness, next: value.clone(), value }
     }
 
     /// Multiplies the derivative by a sign.
@@ -46,8 +48,8 @@ impl Rate {
     ) {
         let (states, count) = (self.state_stiffness.nrows(), self.stiffness.nrows());
         let size = count * self.slots;
-        let mut next = vec![0.0; self.value.len()];
-        for (i, row) in next.chunks_exact_mut(size).enumerate() {
+        self.next.fill(0.0);
+        for (i, row) in self.next.chunks_exact_mut(size).enumerate() {
             let through = &jacobian.by_state[i * states..(i + 1) * states];
             for (j, through) in through.iter().enumerate().filter(|(_, through)| **through != 0.0) {
                 let old = &self.value[j * size..(j + 1) * size];
@@ -66,7 +68,7 @@ impl Rate {
                 }
             }
         }
-        self.value = next;
+        std::mem::swap(&mut self.value, &mut self.next);
     }
 
     /// Adds what the displacements from which the first step leads vary by: rows in all coefficients,

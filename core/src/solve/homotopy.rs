@@ -10,6 +10,11 @@ pub trait Parametrised: System {
     /// Replaces `x` by a start at the present, small parameter, if it knows a better one.
     fn easy_start(&self, x: &mut [f64]);
 
+    /// Whether the last failure was of a kind that lies on every way to the problem.
+    fn is_lost(&self) -> bool {
+        false
+    }
+
     /// Predicts the solution after the parameter has grown by the factor `growth`.
     fn predict(&self, growth: f64, x: &mut [f64]);
 }
@@ -61,7 +66,7 @@ pub fn homotopy(system: &mut impl Parametrised, x: &mut [f64], settings: NewtonS
             x.copy_from_slice(&trial);
             logarithm = next;
             step *= 1.5;
-        } else if report.outcome == Outcome::Interrupted {
+        } else if report.outcome == Outcome::Interrupted || system.is_lost() {
             break;
         } else {
             step *= 0.5;

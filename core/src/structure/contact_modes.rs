@@ -11,11 +11,19 @@ use super::ports::{HarmonicLoad, Ports};
 use crate::solve::{gmres, KrylovSettings};
 use crate::Error;
 use faer::linalg::matmul::matmul;
+use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::linalg::solvers::Solve as _;
 use faer::{c64, Accum, Mat, MatRef, Par};
+use std::sync::OnceLock;
 
 /// Products with the coupling of the damping: far more than it takes.
 const MOST_PRODUCTS: usize = 400;
+/// Contacts with a load that are gathered at once: their shapes stay in the cache.
+const PANEL: usize = 32;
+/// The lowest of so many modes move as they do, the others follow their loads at once, …
+const SLOWEST: usize = 10;
+/// … where inertia and damping change their answers by no more than this.
+const QUASI_STATIC: f64 = 5e-3;
 /// Least modulus of a dynamic stiffness, relative to the squared frequency.
 const FLOOR: f64 = 1e-9;
 
@@ -27,6 +35,12 @@ pub struct ContactModes {
     contacts: Mat<f64>,
     /// Φᵀ, modes × N.
     dofs: Mat<f64>,
+    /// Whether a mode moves any contact.
+    moving: Vec<bool>,
+    /// Whether the damping couples a mode to others.
+    coupled: Vec<bool>,
+    /// Flexibility of all but the slowest modes at the contacts [m/N].
+    flexibility: OnceLock<Mat<f64>>,
     /// Modal mass: 1, or 0 of what DOFs without mass add.
     inertia: Vec<f64>,
     /// Modal stiffness.
@@ -108,8 +122,18 @@ impl ContactModes {
             };
             (load.harmonic, (0..dofs.nrows()).map(of_mode).collect())
         };
+        let contacts = seen(dofs.as_ref(), ports.rows.as_ref());
+        let mut moving = vec![false; all];
+        for shape in contacts.col_iter() {
+            moving.iter_mut().zip(shape.iter()).for_each(|(moving, psi)| *moving |= *psi != 0.0);
+        }
+        let couples = |matrix: &Mat<f64>, j| matrix.col(j).norm_max() > 0.0;
+        let coupled = (0..all).map(|j| coupling.as_ref().is_some_and(|c| couples(c, j))).collect();
         Self {
-            contacts: seen(dofs.as_ref(), ports.rows.as_ref()),
+            contacts,
+            moving,
+            coupled,
+            flexibility: OnceLock::new(),
             inertia,
             omega_squared,
             loads: ports.loads.iter().map(project).collect(),
@@ -140,6 +164,73 @@ impl ContactModes {
     #[must_use]
     pub fn contacts(&self) -> MatRef<'_, f64> {
         self.contacts.as_ref()
+    }
+
+    /// Ψᵀ of some contacts, modes × contacts.
+    #[must_use]
+    pub fn of_contacts(&self, contacts: &[usize]) -> Mat<f64> {
+        let mut own = Mat::zeros(self.modes(), contacts.len());
+        gather(self.contacts(), contacts, &mut own);
+        own
+    }
+
+    /// Ψᵀ of some contacts in the slowest modes, and the flexibility of all others between these contacts;
+    /// nothing where the others do not follow their loads at once. What the two answer differs from
+    /// the whole by some thousandths of that flexibility.
+    #[must_use]
+    pub fn quasi_static(
+        &self,
+        at: &ModalOrders,
+        contacts: &[usize],
+    ) -> Option<(Mat<f64>, Mat<f64>)> {
+        let slow = self.modes() / SLOWEST;
+        let one = c64::new(1.0, 0.0);
+        let follows = |inverse: &[c64]| {
+            let others = inverse.iter().zip(&self.omega_squared).skip(slow);
+            others.map(|(z, k)| (z * *k - one).norm()).all(|change| change <= QUASI_STATIC)
+        };
+        if self.is_coupled() || !at.orders.iter().all(|(.., inverse)| follows(inverse)) {
+            return None;
+        }
+        let flexibility = self.flexibility.get_or_init(|| self.flexibility_behind(slow));
+        let mut shapes = Mat::zeros(slow, contacts.len());
+        gather(self.contacts().subrows(0, slow), contacts, &mut shapes);
+        let mut own = Mat::zeros(contacts.len(), contacts.len());
+        for (at, &j) in contacts.iter().enumerate() {
+            let column = flexibility.col_as_slice(j);
+            let entries = own.col_as_slice_mut(at).iter_mut().zip(contacts);
+            entries.for_each(|(entry, &i)| *entry = column[i]);
+        }
+        Some((shapes, own))
+    }
+
+    /// `Σ ψ ψᵀ / ω²` of all modes behind the first ones.
+    fn flexibility_behind(&self, first: usize) -> Mat<f64> {
+        let (count, size) = (self.modes() - first, self.contacts.ncols());
+        let mut out = Mat::zeros(size, size);
+        // A part of the modes at a time needs no copy of the whole.
+        for start in (0..count).step_by(size.clamp(1, 256)) {
+            let rows = (count - start).min(size.clamp(1, 256));
+            let own = self.contacts().subrows(first + start, rows);
+            let carried = Mat::from_fn(rows, size, |j, i| {
+                own[(j, i)] / self.omega_squared[first + start + j]
+            });
+            triangular::matmul(
+                out.as_mut(),
+                BlockStructure::TriangularLower,
+                Accum::Add,
+                own.transpose(),
+                BlockStructure::Rectangular,
+                carried.as_ref(),
+                BlockStructure::Rectangular,
+                1.0,
+                Par::Seq,
+            );
+        }
+        for j in 0..size {
+            (0..j).for_each(|i| out[(i, j)] = out[(j, i)]);
+        }
+        out
     }
 
     /// The dynamic stiffness at a frequency [rad/s], of harmonics with their slots.
@@ -180,11 +271,10 @@ impl ContactModes {
         let rate = order as f64 * omega;
         for (j, (natural, damping)) in self.omega_squared.iter().zip(&self.damping).enumerate() {
             let distance = (natural - rate * rate).abs() + rate * damping.abs();
-            let coupled = self.coupling.as_ref().is_some_and(|c| c.col(j).norm_max() > 0.0);
-            if coupled || self.inertia[j] == 0.0 {
+            if self.coupled[j] || self.inertia[j] == 0.0 {
                 continue;
             }
-            let moved = self.contacts.row(j).norm_max() > 0.0;
+            let moved = self.moving[j];
             let loaded = || self.load(order).is_some_and(|load| load[j].norm() > 0.0);
             if resonates(distance, rate * rate, moved) && (moved || loaded()) {
                 let natural = natural.max(0.0).sqrt();
@@ -210,13 +300,27 @@ impl ContactModes {
         }
     }
 
-    /// Modal forces of slip loads, `q Ψ`; `contacts` are Ψᵀ of the contacts that have some.
+    /// Modal forces of slip loads, `q Ψ`; `contacts` are Ψᵀ of the contacts that have some. Those without
+    /// a load are passed over.
     #[must_use]
     pub fn excite(contacts: MatRef<'_, f64>, slip_load: MatRef<'_, f64>) -> Mat<f64> {
-        let mut forces = Mat::zeros(slip_load.nrows(), contacts.nrows());
-        let par = Par::Seq;
-        matmul(forces.as_mut(), Accum::Replace, slip_load, contacts.transpose(), 1.0, par);
-        forces
+        let loaded = |j: &usize| slip_load.col(*j).iter().any(|q| *q != 0.0);
+        let loaded: Vec<usize> = (0..slip_load.ncols()).filter(loaded).collect();
+        // Tall columns, one behind the other, go through the processor twice as fast as rows.
+        let mut forces = Mat::zeros(contacts.nrows(), slip_load.nrows());
+        if loaded.len() == slip_load.ncols() {
+            let par = Par::Seq;
+            matmul(forces.as_mut(), Accum::Replace, contacts, slip_load.transpose(), 1.0, par);
+            return forces.transpose().to_owned();
+        }
+        let mut panel = Mat::zeros(contacts.nrows(), PANEL.min(loaded.len()));
+        for own in loaded.chunks(PANEL) {
+            gather(contacts, own, &mut panel);
+            let loads = Mat::from_fn(own.len(), slip_load.nrows(), |j, i| slip_load[(i, own[j])]);
+            let panel = panel.as_ref().subcols(0, own.len());
+            matmul(forces.as_mut(), Accum::Add, panel, loads.as_ref(), 1.0, Par::Seq);
+        }
+        forces.transpose().to_owned()
     }
 
     /// Displacements of modal coordinates at contacts, `y Ψᵀ`.
@@ -359,6 +463,16 @@ impl ModalOrders {
                 let y = inverse[j] * c64::new(column[*slot], -column[slot + 1]);
                 (column[*slot], column[slot + 1]) = (y.re, -y.im);
             }
+        }
+    }
+}
+
+/// Copies some columns side by side into a matrix that is no narrower.
+fn gather(from: MatRef<'_, f64>, columns: &[usize], into: &mut Mat<f64>) {
+    for (at, &j) in columns.iter().enumerate() {
+        match from.col(j).try_as_col_major() {
+            Some(column) => into.col_as_slice_mut(at).copy_from_slice(column.as_slice()),
+            None => into.col_mut(at).copy_from(from.col(j)),
         }
     }
 }

@@ -36,6 +36,8 @@ impl InterfaceCompliance {
         if contacts < if uncoupled { ContactModes::FEWEST } else { MANY } {
             return Ok(None);
         }
+        let omega_squared = squared_frequencies(mass, structure.stiffness())?;
+        let free = RealModes { omega_squared, shapes: Mat::new() }.frequencies();
         let restrained =
             structure.restrained_stiffness(ports.rows.as_ref(), ports.stiffness.as_ref());
         let stuck = structure.modes_at(restrained.as_ref())?;
@@ -49,8 +51,6 @@ impl InterfaceCompliance {
         let stuck = stuck.modes.frequencies();
         let Some(modes) = seen else { return Ok(None) };
         let bandwidth = modes.narrowest_bandwidth();
-        let omega_squared = squared_frequencies(mass, structure.stiffness())?;
-        let free = RealModes { omega_squared, shapes: Mat::new() }.frequencies();
         let forced = forced_harmonics(&ports.loads);
         Ok(Some(Self { modes, outline: Outline { stuck, free, bandwidth, forced } }))
     }

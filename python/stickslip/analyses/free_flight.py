@@ -23,10 +23,13 @@ _SINGULAR = 1e-9
 
 def with_free_flight(result: _Response) -> _Response:
     """Add a caution where a body that contacts alone hold is let go by all of them at once."""
+    normal = [n for n, one in enumerate(result.model.contacts) if "N" in one.components]
+    # A contact of which a node never opens lets nothing go.
+    opens = {one: np.nan_to_num(result.open_fraction(one).min(axis=1)) > 0.0 for one in normal}
+    if not any(own.any() for own in opens.values()):
+        return result
     for body, contacts in _bodies(result.model):
-        opens = np.stack([result.open_fraction(one).min(axis=1) for one in contacts])
-        # What is open for most of the period at the least is looked at first.
-        for index in np.flatnonzero((np.nan_to_num(opens) > 0.0).all(axis=0)):
+        for index in np.flatnonzero(np.all([opens[one] for one in contacts], axis=0)):
             shut = [
                 (result.contact_force(one, int(index), _SAMPLES)[..., -1] > 0.0)
                 .reshape(_SAMPLES, -1)

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import io
 import os
-import re
 from contextlib import redirect_stderr, redirect_stdout
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,10 +12,9 @@ from numpy.typing import ArrayLike
 from stickslip.checks import file_path, optional_package
 from stickslip.errors import ModelError
 from stickslip.fe.mesh import Mesh
+from stickslip.io.bulk_data import read_bulk
 from stickslip.io.decks import read_deck
-from stickslip.io.source import plain, readable
-
-_GRID = re.compile(r"GRID(?:\*\s*|\s*,\s*|\s+)(\d+)", re.IGNORECASE)
+from stickslip.io.source import readable
 
 
 def read_mesh(path: str | os.PathLike[str], numbers: ArrayLike | None = None) -> Mesh:
@@ -29,7 +26,8 @@ def read_mesh(path: str | os.PathLike[str], numbers: ArrayLike | None = None) ->
         The file. Of a deck, `.inp` of CalculiX or Abaqus without parts and instances, node sets
         and surfaces are read, too, their names in capitals; solids C3D4, C3D6, C3D8, C3D10, C3D15
         and C3D20 and shells S3 to S8 with all that is added to their names, others are left out.
-        Other files, `.bdf` (Nastran), `.msh` (Gmsh), `.vtu`, need the package meshio.
+        Other files, `.bdf` (Nastran), `.msh` (Gmsh), `.vtu`, need the package meshio. Of Nastran's
+        bulk data the nodes of every `SET1` are a node set, "SET1 7" by its number.
     numbers : array_like of int, optional
         Numbers of the nodes in the order of the file. Default: those of the file in `.inp`,
         `.bdf`, `.nas` and `.fem`, otherwise 1, 2, ...
@@ -47,6 +45,7 @@ def read_mesh(path: str | os.PathLike[str], numbers: ArrayLike | None = None) ->
     References
     ----------
     Dhondt, "CalculiX CrunchiX User's Manual", keywords *NODE, *ELEMENT, *NSET, *ELSET, *SURFACE.
+    MSC Nastran, "Quick Reference Guide", bulk data entries GRID and SET1.
     """
     file = file_path(path, "path")
     if file.suffix.lower() == ".inp":
@@ -66,19 +65,11 @@ def read_mesh(path: str | os.PathLike[str], numbers: ArrayLike | None = None) ->
         points = np.asarray(read.points, dtype=np.float64)
         if points.ndim == 2 and points.shape[1] == 2:
             points = np.pad(points, ((0, 0), (0, 1)))
-        own = _numbers_of(file) if numbers is None else numbers
+        bulk = read_bulk(file) if file.suffix.lower() in (".bdf", ".nas", ".fem") else None
+        own = bulk.numbers if bulk and numbers is None else numbers
         # Elements whose nodes differ in number, as polyhedra, have no table.
         cells = [(block.type, block.data) for block in read.cells if np.ndim(block.data) == 2]
     try:
-        return Mesh(points, cells, own)
+        return Mesh(points, cells, own, bulk.node_sets() if bulk else None)
     except ModelError as error:
         raise ModelError(f"{file}: {error}") from None
-
-
-def _numbers_of(file: Path) -> list[int] | None:
-    """Return the numbers of the nodes, which meshio does not tell; None of other formats."""
-    kind = file.suffix.lower()
-    if kind in (".bdf", ".nas", ".fem"):
-        lines = plain(file.read_bytes(), "latin-1").splitlines()
-        return [int(match[1][:16]) for line in lines if (match := _GRID.match(line))]
-    return None
