@@ -69,3 +69,28 @@ def test_orbits_name_a_body_that_may_stand_anywhere(ground: float, status: str) 
     orbit = ss.exact_response(model, [90.0])
     assert orbit.status == (status,)
     assert orbit.status[0].advice.count("ground the body") == (status == "free")
+
+
+@pytest.mark.parametrize("harmonics", [1, 9])
+def test_a_mean_that_only_rounding_moves_is_free(harmonics: int) -> None:
+    """The contact is open throughout, and the structure turns without stiffness."""
+    row = np.array([134.07950, -3.57433])
+    structure = ss.Structure(
+        mass=np.diag([0.84659, 1.7232]),
+        stiffness=np.outer(row, row),
+        damping=np.diag([2.0, 0.5]),
+        dofs=["x", "z"],
+    )
+    floor = ss.Coulomb(
+        ["x", {"x": 0.013033, "z": -0.029218}],
+        normal=[0.0, 1.0],
+        friction=0.308959,
+        tangential_stiffness=9973.29,
+        normal_stiffness=35659.6,
+        gap=-3.30823e-3,
+    )
+    loads = [ss.Force("x", 189.28, phase=1.30157), ss.Force("z", -65.44869, phase=-2.12742)]
+    frf = ss.forced_response(ss.Model(structure, [floor], loads), [115.6996], harmonics)
+    assert frf.status[0] in ("free", "converged")
+    if frf.status[0] == "converged":
+        assert [one.code for one in frf.diagnostics].count("free-flight") == 1

@@ -53,6 +53,8 @@ pub struct Condensed<'a> {
     pub(super) sizes: Vec<f64>,
     /// Whether nothing holds the mean in the last direction that was asked for.
     pub(super) free: bool,
+    /// Whether that direction has a mean that rounding moves: equations that hold say nothing of it.
+    pub(super) loose: bool,
     pub(super) profile: Profile,
 }
 
@@ -85,6 +87,7 @@ impl<'a> Condensed<'a> {
             factor: None,
             sizes: Vec::new(),
             free: false,
+            loose: false,
             profile: Profile::default(),
         }
     }

@@ -340,8 +340,9 @@ impl<'a> ForcedBalance<'a> {
                 return Ok(self.not_computed(omega));
             }
             Outcome::Converged => PointStatus::Converged,
-            Outcome::Stalled => PointStatus::Stalled,
             Outcome::Singular if equations.free => PointStatus::Free,
+            Outcome::Stalled if equations.loose => PointStatus::Free,
+            Outcome::Stalled => PointStatus::Stalled,
             Outcome::Singular => PointStatus::Singular,
         };
         let start = std::time::Instant::now();

@@ -155,11 +155,20 @@ impl Condensed<'_> {
 
     /// Whether a direction goes so far in the mean that nothing holds it, however far it goes.
     fn leaves_mean_open(&self, step: &[f64]) -> bool {
-        let harmonics = self.table.harmonics();
         let motion = self.sizes.iter().copied().fold(0.0, f64::max);
-        let mean = step.iter().step_by(harmonics.slots()).map(|mean| mean.abs());
         let far = if self.may_walk() { WALKS } else { FREE };
-        harmonics.has_mean() && mean.fold(0.0, f64::max) > far * motion
+        self.largest_mean(step) > far * motion
+    }
+
+    /// The largest mean displacement of a direction, 0 if there is no mean \[m\].
+    fn largest_mean(&self, step: &[f64]) -> f64 {
+        let harmonics = self.table.harmonics();
+        let means = step.iter().step_by(harmonics.slots()).map(|mean| mean.abs());
+        if harmonics.has_mean() {
+            means.fold(0.0, f64::max)
+        } else {
+            0.0
+        }
     }
 
     /// Whether many contacts are all that holds a body: under a load beyond what friction keeps while it
@@ -309,6 +318,7 @@ impl System for Condensed<'_> {
         }
         self.profile.linear_solve += start.elapsed();
         self.free = self.leaves_mean_open(step);
+        self.loose = self.largest_mean(step) > FREE * norm(rhs);
         !self.free && step.iter().all(|s| s.is_finite())
     }
 }
