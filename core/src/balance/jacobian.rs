@@ -9,7 +9,6 @@ use super::linear::{Factor, Linear};
 use super::ring_newton::RingNewton;
 use super::ring_series::RingSeries;
 use super::slip_jacobian::{Answers, Border, Loads, SlipJacobian};
-use super::statics::FREE;
 use crate::contact::SlipLoad;
 use crate::model::Model;
 use crate::solve::{norm, Parametrised, System};
@@ -19,12 +18,6 @@ use faer::Mat;
 
 /// Share of the largest contact force below which a contact counts as carrying nothing.
 const CARRIES_NOTHING: f64 = 1e-3;
-
-/// Mean of a direction, relative to the motion, that is the walk of a body which contacts alone hold: what
-/// holds it elastically does so within a few times its motion.
-const WALKS: f64 = 1e4;
-/// Natural frequency without contacts, relative to that with all of them stuck, that is none.
-const RIGID: f64 = 1e-4;
 
 /// Loss, relative to the stiffness of contacts, whose end hardly moves a solution any more.
 const LEAST_LOSS: f64 = 1e-12;
@@ -151,34 +144,6 @@ impl Condensed<'_> {
     /// The contacts that yield, as products with the modes see them.
     fn krylov_newton(&self) -> KrylovNewton {
         KrylovNewton::new(self.model.compliance(), &self.active_points(), None)
-    }
-
-    /// Whether a direction goes so far in the mean that nothing holds it, however far it goes.
-    fn leaves_mean_open(&self, step: &[f64]) -> bool {
-        let motion = self.sizes.iter().copied().fold(0.0, f64::max);
-        let far = if self.may_walk() { WALKS } else { FREE };
-        self.largest_mean(step) > far * motion
-    }
-
-    /// The largest mean displacement of a direction, 0 if there is no mean \[m\].
-    fn largest_mean(&self, step: &[f64]) -> f64 {
-        let harmonics = self.table.harmonics();
-        let means = step.iter().step_by(harmonics.slots()).map(|mean| mean.abs());
-        if harmonics.has_mean() {
-            means.fold(0.0, f64::max)
-        } else {
-            0.0
-        }
-    }
-
-    /// Whether many contacts are all that holds a body: under a load beyond what friction keeps while it
-    /// vibrates it walks, and no motion repeats.
-    fn may_walk(&self) -> bool {
-        let compliance = self.model.compliance();
-        let lowest = |frequencies: &[f64]| frequencies.first().copied();
-        let (free, stuck) = (compliance.free_frequencies(), compliance.stuck_frequencies());
-        matches!(self.linear, Linear::Modal(_))
-            && lowest(free).zip(lowest(stuck)).is_some_and(|(free, stuck)| free <= RIGID * stuck)
     }
 
     /// Points of the contacts that yield.
@@ -317,8 +282,7 @@ impl System for Condensed<'_> {
             _ => return false,
         }
         self.profile.linear_solve += start.elapsed();
-        self.free = self.leaves_mean_open(step);
-        self.loose = self.largest_mean(step) > FREE * norm(rhs);
+        self.judge_mean(step, norm(rhs));
         !self.free && step.iter().all(|s| s.is_finite())
     }
 }

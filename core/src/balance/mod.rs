@@ -3,6 +3,7 @@
 
 mod accuracy;
 mod adaptive;
+mod attempts;
 mod branch_sweep;
 mod condensed;
 mod continuity;
@@ -23,6 +24,7 @@ mod limit_cycle;
 mod linear;
 mod linearised;
 mod modal_work;
+mod open_mean;
 mod peak;
 mod price;
 

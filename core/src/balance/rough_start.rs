@@ -4,8 +4,9 @@
 //! close to the next one, and Newton's method takes most of its steps to find the new states. Few
 //! harmonics know them, too, at a small part of the price.
 
+use super::attempts::is_bounded;
 use super::condensed::Condensed;
-use super::forced::{is_bounded, ForcedBalance};
+use super::forced::ForcedBalance;
 use super::modal_work::is_large;
 use super::settings::{Method, Resolution};
 use super::solution::Point;

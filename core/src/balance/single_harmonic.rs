@@ -5,9 +5,10 @@
 //! `sum_j m_ij X_j + k_i (a_i − i b_i) X_i/A_i = r_i` keeps them. As everywhere it is condensed
 //! onto the stuck structure: `U = U^stuck + G Q`, `Q_i = (k_i − K_i(|U_i|)) U_i`.
 
+use super::attempts::is_bounded;
 use super::condensed::Condensed;
 use super::evaluation::Evaluated;
-use super::forced::{is_bounded, ForcedBalance};
+use super::forced::ForcedBalance;
 use super::solution::{Point, PointStatus, Solution};
 use super::sweep::sweep_with;
 use super::unknowns::Unknowns;

@@ -1,0 +1,228 @@
+//! Attempts at one point of a forced response: the chosen method, and what follows where it fails.
+
+use super::condensed::{Condensed, Path};
+use super::forced::ForcedBalance;
+use super::settings::{resolving, Method, Resolution};
+use super::solution::{Point, PointStatus};
+use super::unknowns::Unknowns;
+use crate::solve::{
+    broyden, homotopy, newton, norm, Outcome, Parametrised as _, Report, System as _,
+};
+use crate::Error;
+
+/// Contact displacements over those of the stuck structure at which an undamped resonance counts as
+/// one that friction does not bound.
+const UNBOUNDED: f64 = 1e12;
+
+/// Samples per period by which a motion is tried that exact integrals do not lead to.
+const BLURRED: usize = 512;
+
+impl ForcedBalance<'_> {
+    /// Solves at one frequency with some harmonics and samples.
+    ///
+    /// # Errors
+    /// As for a solution at one frequency.
+    pub(super) fn solve_with(
+        &mut self,
+        resolution: Resolution,
+        omega: f64,
+        start: Option<&Unknowns>,
+    ) -> Result<Point, Error> {
+        let solved = self.attempt(resolution, omega, start)?;
+        let failed = !matches!(solved.status, PointStatus::Converged | PointStatus::NotComputed);
+        if !failed || resolution.samples.is_some() || self.follows() {
+            return Ok(solved);
+        }
+        if let Some(point) = self.solve_by_fewer(resolution, omega)? {
+            return Ok(point);
+        }
+        if solved.status != PointStatus::Stalled {
+            return Ok(solved);
+        }
+        // Samples blur the edges between states at which an exact law may hold Newton's method up.
+        let samples = Some(resolving(resolution.harmonics).max(BLURRED));
+        let blurred = self.attempt(Resolution { samples, ..resolution }, omega, start)?;
+        if !blurred.is_solved() {
+            return Ok(solved);
+        }
+        let sharp = self.attempt(resolution, omega, blurred.unknowns.as_ref())?;
+        Ok(if sharp.is_solved() { sharp } else { blurred })
+    }
+
+    /// The chosen method from a start, and what follows where it fails.
+    pub(super) fn attempt(
+        &mut self,
+        resolution: Resolution,
+        omega: f64,
+        start: Option<&Unknowns>,
+    ) -> Result<Point, Error> {
+        let rough = start.map(|start| self.rough_start(resolution, omega, start)).transpose()?;
+        let start = rough.as_ref().and_then(Option::as_ref).or(start);
+        let table = self.table(resolution.harmonics);
+        let model = self.evaluated(resolution.samples)?;
+        let interrupted = self.interruption();
+        let mut equations = Condensed::new(model, &table, self.settings.residual, false);
+        equations.watch(&interrupted);
+        if self.settings.method != Method::Newton {
+            equations.densify();
+        }
+        let solved = self.solve_equations(&mut equations, omega, start, resolution.samples)?;
+        self.add_profile(&equations.profile);
+        Ok(solved)
+    }
+
+    /// Whether a homotopy leads to the solution: it does where there is one alone.
+    fn follows(&self) -> bool {
+        self.is_monotone()
+    }
+
+    /// The chosen method from the start, then homotopy, then a status that says so.
+    fn solve_equations(
+        &mut self,
+        equations: &mut Condensed<'_>,
+        omega: f64,
+        start: Option<&Unknowns>,
+        samples: Option<usize>,
+    ) -> Result<Point, Error> {
+        let contacts = self.model.compliance().contacts();
+        if let Err((order, error)) = equations.set_omega(omega) {
+            if order == 0 || self.forced.contains(&order) {
+                return Err(error);
+            }
+            return Ok(Point::empty(omega, PointStatus::Singular, self.observe.len(), contacts));
+        }
+        let harmonics = equations.harmonics();
+        let mut x = start.map_or_else(
+            || equations.stuck_response().to_vec(),
+            |unknowns| unknowns.recast(harmonics),
+        );
+        let mut report = self.iterate(equations, &mut x);
+        let patient = self.is_worth_a_homotopy(harmonics.highest());
+        if has_failed(&report) && start.is_some() && patient {
+            // A neighbour in another state of the contacts may mislead.
+            let spent = report.iterations;
+            x = equations.stuck_response().to_vec();
+            report = self.iterate(equations, &mut x);
+            report.iterations += spent;
+        }
+        let orbit = has_failed(&report) && self.start_again(equations, omega, &mut x, &mut report);
+        // Where harmonics are chosen an orbit is the answer.
+        let answered = orbit && self.control.only_harmonics_climb();
+        // Where nothing holds the mean of many contacts, paths to the same motion take minutes.
+        let lost = report.outcome == Outcome::Singular && equations.is_lost();
+        let follows = (samples.is_some() || self.follows()) && !lost;
+        if has_failed(&report) && !answered && patient && follows {
+            self.profile.homotopies += 1;
+            self.follow_paths(equations, &mut x, &mut report);
+        }
+        let status = match report.outcome {
+            Outcome::Interrupted => {
+                return Ok(self.not_computed(omega));
+            }
+            Outcome::Converged => PointStatus::Converged,
+            Outcome::Singular if equations.free => PointStatus::Free,
+            Outcome::Stalled if equations.loose => PointStatus::Free,
+            Outcome::Stalled => PointStatus::Stalled,
+            Outcome::Singular => PointStatus::Singular,
+        };
+        let start = std::time::Instant::now();
+        let mut point = equations.recover(&x, self.observe, status)?;
+        point.samples = samples;
+        self.profile.recovery += start.elapsed();
+        // Without an observed DOF there is nothing whose error could be estimated.
+        if status == PointStatus::Converged && !self.observe.is_empty() {
+            let start = std::time::Instant::now();
+            let estimated = self.estimate(equations, &x, &mut point)?;
+            self.profile.estimate += start.elapsed();
+            if !estimated {
+                return Ok(self.not_computed(omega));
+            }
+        }
+        point.residual = report.residual;
+        point.iterations = report.iterations;
+        point.unknowns = Some(Unknowns { harmonics: harmonics.clone(), values: x });
+        Ok(point)
+    }
+
+    /// The chosen method from `x`.
+    fn iterate(&mut self, equations: &mut Condensed<'_>, x: &mut [f64]) -> Report {
+        let Method::Broyden(first) = self.settings.method else {
+            let report = newton(equations, x, self.settings.newton);
+            return if_bounded(report, x, equations);
+        };
+        let (report, effort) = broyden(equations, x, self.settings.newton, first);
+        equations.profile.factorisations += effort.jacobians;
+        self.profile.updates += effort.updates;
+        self.profile.restarts += usize::from(effort.jacobians > 1);
+        if_bounded(report, x, equations)
+    }
+
+    /// Newton's method from the exact orbit; whether there is one.
+    fn start_again(
+        &self,
+        equations: &mut Condensed<'_>,
+        omega: f64,
+        x: &mut Vec<f64>,
+        report: &mut Report,
+    ) -> bool {
+        let harmonics = equations.harmonics();
+        let orbit = self.orbit_to_start_from(omega, harmonics.highest());
+        let Some(amplitudes) = orbit.map(|orbit| orbit.contact_displacement) else { return false };
+        let orders = harmonics.highest() + 1;
+        let mut trial = vec![0.0; x.len()];
+        let points = amplitudes.chunks_exact(orders).zip(trial.chunks_exact_mut(harmonics.slots()));
+        points.for_each(|(amplitudes, series)| harmonics.write_series(amplitudes, series));
+        let again = newton(equations, &mut trial, self.settings.newton);
+        let again = if_bounded(again, &trial, equations);
+        report.iterations += again.iterations;
+        if !has_failed(&again) {
+            (report.outcome, report.residual) = (again.outcome, again.residual);
+            *x = trial;
+        }
+        true
+    }
+
+    /// Homotopy, by Newton's method, after the chosen method has failed: first in the contact
+    /// stiffness, whose path is smooth even for nearly rigid contacts, then, where friction alone acts, in
+    /// a loss: beside a resonance that friction hardly bounds it leads to the phase that friction cannot
+    /// change. Springs without stiffness at rest have no such loss; their path is that of the load.
+    fn follow_paths(&self, equations: &mut Condensed<'_>, x: &mut Vec<f64>, report: &mut Report) {
+        let last = if self.is_monotone() { Path::Loss } else { Path::Load };
+        for path in [Path::Stiffness, last] {
+            let mut along = x.clone();
+            equations.choose(path);
+            let followed = homotopy(equations, &mut along, self.settings.newton);
+            let followed = if_bounded(followed, &along, equations);
+            report.iterations += followed.iterations;
+            if !has_failed(&followed) {
+                (report.outcome, report.residual) = (followed.outcome, followed.residual);
+                *x = along;
+                break;
+            }
+            if equations.is_lost() {
+                report.outcome = Outcome::Singular;
+                break;
+            }
+        }
+        // The recovery reads slip loads and tangents at the point that is returned.
+        let mut residual = vec![0.0; equations.size()];
+        equations.residual(x, &mut residual);
+    }
+}
+
+/// The report of a solution, unless nothing bounds the motion.
+fn if_bounded(report: Report, x: &[f64], equations: &Condensed<'_>) -> Report {
+    if report.outcome == Outcome::Converged && !is_bounded(x, equations.stuck_response()) {
+        return Report { outcome: Outcome::Singular, ..report };
+    }
+    report
+}
+
+/// Whether a motion is small enough that rounding leaves the effect of the load in its digits.
+pub(super) fn is_bounded(x: &[f64], stuck: &[f64]) -> bool {
+    norm(x) <= UNBOUNDED * norm(stuck)
+}
+
+fn has_failed(report: &Report) -> bool {
+    !matches!(report.outcome, Outcome::Converged | Outcome::Interrupted)
+}

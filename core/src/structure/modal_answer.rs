@@ -1,0 +1,230 @@
+//! What the modes of the stuck structure answer to forces at the harmonics of a frequency.
+
+use super::contact_modes::{gather, ContactModes};
+use crate::solve::{gmres, KrylovSettings};
+use crate::Error;
+use faer::linalg::matmul::matmul;
+use faer::linalg::matmul::triangular::{self, BlockStructure};
+use faer::linalg::solvers::Solve as _;
+use faer::{c64, Accum, Mat, Par};
+
+/// Products with the coupling of the damping: far more than it takes.
+const MOST_PRODUCTS: usize = 400;
+/// Least modulus of a dynamic stiffness, relative to the squared frequency.
+const FLOOR: f64 = 1e-9;
+
+/// The lowest of so many modes move as they do, the others follow their loads at once, …
+const SLOWEST: usize = 10;
+/// … where inertia and damping change their answers by no more than this.
+const QUASI_STATIC: f64 = 5e-3;
+
+/// The dynamic stiffness of every mode at the harmonics of a frequency.
+#[derive(Debug, Clone, Default)]
+pub struct ModalOrders {
+    /// Slot, `kω`, and the inverse of the diagonal of Z for every mode.
+    orders: Vec<(usize, f64, Vec<c64>)>,
+    harmonics: Vec<usize>,
+}
+
+impl ContactModes {
+    /// Adds the external load to modal forces, slots × modes.
+    pub fn add_load(&self, at: &ModalOrders, forces: &mut Mat<f64>) {
+        for ((slot, ..), order) in at.orders.iter().zip(&at.harmonics) {
+            for (j, p) in self.load(*order).into_iter().flatten().enumerate() {
+                forces[(*slot, j)] += p.re;
+                if *order > 0 {
+                    forces[(slot + 1, j)] -= p.im;
+                }
+            }
+        }
+    }
+
+    /// Ψᵀ of some contacts in the slowest modes, and the flexibility of all others between these contacts;
+    /// nothing where the others do not follow their loads at once. What the two answer differs from
+    /// the whole by some thousandths of that flexibility.
+    #[must_use]
+    pub fn quasi_static(
+        &self,
+        at: &ModalOrders,
+        contacts: &[usize],
+    ) -> Option<(Mat<f64>, Mat<f64>)> {
+        let slow = self.modes() / SLOWEST;
+        let one = c64::new(1.0, 0.0);
+        let follows = |inverse: &[c64]| {
+            let others = inverse.iter().zip(&self.omega_squared).skip(slow);
+            others.map(|(z, k)| (z * *k - one).norm()).all(|change| change <= QUASI_STATIC)
+        };
+        if self.is_coupled() || !at.orders.iter().all(|(.., inverse)| follows(inverse)) {
+            return None;
+        }
+        let flexibility = self.flexibility.get_or_init(|| self.flexibility_behind(slow));
+        let mut shapes = Mat::zeros(slow, contacts.len());
+        gather(self.contacts().subrows(0, slow), contacts, &mut shapes);
+        let mut own = Mat::zeros(contacts.len(), contacts.len());
+        for (at, &j) in contacts.iter().enumerate() {
+            let column = flexibility.col_as_slice(j);
+            let entries = own.col_as_slice_mut(at).iter_mut().zip(contacts);
+            entries.for_each(|(entry, &i)| *entry = column[i]);
+        }
+        Some((shapes, own))
+    }
+
+    /// `Σ ψ ψᵀ / ω²` of all modes behind the first ones.
+    fn flexibility_behind(&self, first: usize) -> Mat<f64> {
+        let (count, size) = (self.modes() - first, self.contacts.ncols());
+        let mut out = Mat::zeros(size, size);
+        // A part of the modes at a time needs no copy of the whole.
+        for start in (0..count).step_by(size.clamp(1, 256)) {
+            let rows = (count - start).min(size.clamp(1, 256));
+            let own = self.contacts().subrows(first + start, rows);
+            let carried = Mat::from_fn(rows, size, |j, i| {
+                own[(j, i)] / self.omega_squared[first + start + j]
+            });
+            triangular::matmul(
+                out.as_mut(),
+                BlockStructure::TriangularLower,
+                Accum::Add,
+                own.transpose(),
+                BlockStructure::Rectangular,
+                carried.as_ref(),
+                BlockStructure::Rectangular,
+                1.0,
+                Par::Seq,
+            );
+        }
+        for j in 0..size {
+            (0..j).for_each(|i| out[(i, j)] = out[(j, i)]);
+        }
+        out
+    }
+
+    /// The dynamic stiffness at a frequency [rad/s], of harmonics with their slots.
+    ///
+    /// # Errors
+    /// The harmonic at which the structure is singular, and why.
+    pub fn orders(
+        &self,
+        harmonics: impl Iterator<Item = (usize, usize)>,
+        omega: f64,
+    ) -> Result<ModalOrders, (usize, Error)> {
+        let (mut orders, mut kept) = (Vec::new(), Vec::new());
+        for (order, slot) in harmonics {
+            let rate = order as f64 * omega;
+            self.check(order, omega).map_err(|error| (order, error))?;
+            let inverse = (0..self.modes()).map(|j| {
+                let own = self.stiffness(j, rate);
+                // Met exactly by a mode that damping only couples: the iteration sees to the rest.
+                let least = FLOOR * rate * rate;
+                if own.norm() < least { c64::new(0.0, least) } else { own }.inv()
+            });
+            orders.push((slot, rate, inverse.collect()));
+            kept.push(order);
+        }
+        Ok(ModalOrders { orders, harmonics: kept })
+    }
+
+    /// `Z⁻¹` of the columns of a matrix of complex modal forces, by a factorisation where the damping
+    /// couples modes.
+    pub(super) fn solved(&self, order: usize, omega: f64, forces: Mat<c64>) -> Mat<c64> {
+        let rate = order as f64 * omega;
+        let own = |j: usize| self.stiffness(j, rate);
+        // Damping couples nothing at rest.
+        let Some(coupling) = self.coupling.as_ref().filter(|_| rate != 0.0) else {
+            return Mat::from_fn(forces.nrows(), forces.ncols(), |i, j| forces[(i, j)] / own(i));
+        };
+        let whole = Mat::from_fn(self.modes(), self.modes(), |i, j| {
+            let diagonal = if i == j { own(i) } else { c64::new(0.0, 0.0) };
+            diagonal + c64::new(0.0, rate * coupling[(j, i)])
+        });
+        whole.partial_piv_lu().solve(forces)
+    }
+
+    /// `−dZ/dω` of the columns of a matrix of complex modal coordinates.
+    pub(super) fn softening(&self, order: usize, omega: f64, coordinates: &Mat<c64>) -> Mat<c64> {
+        let k = order as f64;
+        let coupled = self.coupling.as_ref().map(|coupling| {
+            let matrix = coupling.transpose();
+            Mat::from_fn(matrix.nrows(), matrix.ncols(), |i, j| c64::new(matrix[(i, j)], 0.0))
+                * coordinates
+        });
+        Mat::from_fn(coordinates.nrows(), coordinates.ncols(), |i, j| {
+            let y = coordinates[(i, j)];
+            let other = coupled.as_ref().map_or(c64::new(0.0, 0.0), |coupled| coupled[(i, j)]);
+            2.0 * k * k * omega * self.inertia[i] * y
+                - c64::new(0.0, k) * (self.damping[i] * y + other)
+        })
+    }
+
+    /// Turns modal forces into modal coordinates, `Z⁻¹ f`, to a relative tolerance where the damping
+    /// couples modes.
+    pub fn answer(&self, at: &ModalOrders, forces: &mut Mat<f64>, tolerance: f64) {
+        let Some(coupling) = &self.coupling else { return at.divide(forces) };
+        let (slots, modes) = (forces.nrows(), forces.ncols());
+        let rhs: Vec<f64> = (0..modes).flat_map(|j| forces.col(j).iter().copied()).collect();
+        let mut carried = vec![0.0; rhs.len()];
+        let column_major =
+            |values: &[f64]| Mat::from_fn(slots, modes, |i, j| values[j * slots + i]);
+        let mut work = Mat::zeros(slots, modes);
+        // Forces that the diagonal carries: (1 + iω C_off diag(Z)⁻¹) carried = forces.
+        let product = |v: &[f64], out: &mut [f64]| {
+            let mut y = column_major(v);
+            at.divide(&mut y);
+            matmul(work.as_mut(), Accum::Replace, y.as_ref(), coupling.as_ref(), 1.0, Par::Seq);
+            out.copy_from_slice(v);
+            for (j, out) in out.chunks_exact_mut(slots).enumerate() {
+                for &(slot, rate, _) in at.orders.iter().filter(|(_, rate, _)| *rate > 0.0) {
+                    out[slot] += rate * work[(slot + 1, j)];
+                    out[slot + 1] -= rate * work[(slot, j)];
+                }
+            }
+            true
+        };
+        gmres(
+            product,
+            &rhs,
+            &mut carried,
+            KrylovSettings { tolerance, max_products: MOST_PRODUCTS },
+        );
+        *forces = column_major(&carried);
+        at.divide(forces);
+    }
+
+    /// Rate of change with ω of modal coordinates under fixed forces: `−Z⁻¹ dZ/dω y`.
+    pub fn answer_rate(&self, at: &ModalOrders, coordinates: &mut Mat<f64>, tolerance: f64) {
+        let coupled = self.coupling.as_ref().map(|coupling| &*coordinates * coupling);
+        for ((slot, rate, _), order) in at.orders.iter().zip(&at.harmonics) {
+            let order = *order as f64;
+            for j in 0..coordinates.ncols() {
+                if order == 0.0 {
+                    coordinates[(*slot, j)] = 0.0;
+                    continue;
+                }
+                let y = c64::new(coordinates[(*slot, j)], -coordinates[(slot + 1, j)]);
+                let mut damped = self.damping[j] * y;
+                if let Some(other) = &coupled {
+                    damped += c64::new(other[(*slot, j)], -other[(slot + 1, j)]);
+                }
+                let change =
+                    2.0 * order * rate * self.inertia[j] * y - c64::new(0.0, order) * damped;
+                (coordinates[(*slot, j)], coordinates[(slot + 1, j)]) = (change.re, -change.im);
+            }
+        }
+        self.answer(at, coordinates, tolerance);
+    }
+}
+
+impl ModalOrders {
+    /// Divides by the diagonal of Z.
+    fn divide(&self, forces: &mut Mat<f64>) {
+        for (j, mut column) in forces.col_iter_mut().enumerate() {
+            for (slot, rate, inverse) in &self.orders {
+                if *rate == 0.0 {
+                    column[*slot] *= inverse[j].re;
+                    continue;
+                }
+                let y = inverse[j] * c64::new(column[*slot], -column[slot + 1]);
+                (column[*slot], column[slot + 1]) = (y.re, -y.im);
+            }
+        }
+    }
+}
