@@ -9,8 +9,13 @@ os.environ["MPLBACKEND"] = "agg"  # no test opens a window, nor does a command t
 # Tests run on every core: threads of small products would wait for each other.
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
+import hypothesis
 import numpy as np
 import pytest
+
+# A busy machine is no failure.
+hypothesis.settings.register_profile("untimed", deadline=None)
+hypothesis.settings.load_profile("untimed")
 
 
 @pytest.fixture(autouse=True)

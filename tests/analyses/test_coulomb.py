@@ -256,7 +256,7 @@ def test_unsolved_points_have_no_numbers():
     assert np.isnan(result.open_fraction(0)).all()
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(seed=st.integers(0, 2**32 - 1))
 def test_random_faces_obey_the_law(seed):
     """Whatever is solved keeps N >= 0 and the cone, dissipates, and closes its energy balance."""

@@ -74,7 +74,7 @@ def test_a_chain_of_joints_vibrates_as_its_integration_in_time_does():
         assert balance.amplitude(dof)[0] == pytest.approx(amplitude, rel=2e-5)
 
 
-@settings(max_examples=15, deadline=None, derandomize=True)
+@settings(max_examples=15, derandomize=True)
 @given(
     chi=st.floats(-0.95, 0.0),
     beta=st.floats(0.0, 5.0),

@@ -203,7 +203,7 @@ def test_a_limit_of_samples_is_a_status_with_advice():
 
 
 @pytest.mark.slow
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(
     stiffness=st.floats(0.05, 20.0),
     limit=st.floats(0.05, 3.0),

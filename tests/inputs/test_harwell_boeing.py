@@ -31,7 +31,7 @@ F                          1             0
  1.00000D+00
 """
 
-few = settings(max_examples=40, deadline=None)
+few = settings(max_examples=40)
 
 
 @pytest.fixture

@@ -14,7 +14,7 @@ from stickslip.model.jenkins import Jenkins
 from stickslip.model.laws import LAWS, contact_from_spec
 from stickslip.reference import snecma_structure
 
-few = settings(max_examples=40, deadline=None)
+few = settings(max_examples=40)
 
 
 def damper(**changes):

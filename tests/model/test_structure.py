@@ -25,7 +25,7 @@ def spd(seed: int, size: int) -> np.ndarray:
     return root @ root.T + size * np.eye(size)
 
 
-few = settings(max_examples=40, deadline=None)
+few = settings(max_examples=40)
 structures = st.builds(
     lambda seed, size: Structure(spd(seed, size), spd(seed + 1, size), spd(seed + 2, size)),
     st.integers(0, 2**31),
