@@ -12,7 +12,7 @@ use std::sync::Arc;
 use stickslip_core::balance::{Cause, Linearised, Unknowns};
 use stickslip_core::contact::Residual;
 use stickslip_core::design::{
-    self, bounded_peak_curve, optimum, peak_curve, Cell, Curve, Peak, PeakBounds, Target,
+    self, bounded_peak_curve, optimum, peak_curve, Cell, CellPeak, Curve, Peak, PeakBounds, Target,
 };
 use stickslip_core::fourier::{Harmonics, Measure, SampleTable};
 use stickslip_core::model::Variation;
@@ -95,20 +95,21 @@ pub fn optimal_damper<'py>(
 /// A problem of a map, with its settings and the DOF whose peak is sought.
 type CellOf<'py> = (PyRef<'py, Problem>, Bound<'py, PyAny>, usize);
 
-/// Amplitude, frequency and harmonics of the peaks of all problems of a map.
+/// Amplitude, frequency, harmonics and status of the peaks of all problems of a map.
 #[pyfunction]
 pub fn peak_map(
     py: Python<'_>,
     cells: Vec<CellOf<'_>>,
     grid: Vec<f64>,
     threads: usize,
-) -> PyResult<Vec<(f64, f64, usize)>> {
+) -> PyResult<Vec<(f64, f64, usize, u8)>> {
     let cell = |(problem, settings, dof): CellOf<'_>| {
         Ok((Arc::clone(&problem.model), harmonic(&settings)?, dof))
     };
     let cells: Vec<Cell> = cells.into_iter().map(cell).collect::<PyResult<_>>()?;
     let peaks = watch::whole(py, move |look| design::peak_map(&cells, &grid, threads, look))?;
-    Ok(peaks.iter().map(|peak| (peak.amplitude, peak.omega, peak.harmonics)).collect())
+    let told = |peak: &CellPeak| (peak.amplitude, peak.omega, peak.harmonics, peak.status as u8);
+    Ok(peaks.iter().map(told).collect())
 }
 
 /// What amplitudes are differentiated by: "omega", "level", or a parameter of a contact or of one of

@@ -34,6 +34,7 @@ def test_peaks_of_a_map_are_those_of_fine_curves():
     values = {"mass": [0.05, 0.2], "angle": [50.0, 60.0]}
     found = ss.design_map(pair, values, dof="left.x", omega=(95.0, 120.0), threads=1)
     assert found.amplitude.shape == (2, 2)
+    assert found.status == 2 * (2 * ("converged",),)
     for row, mass in enumerate(values["mass"]):
         for column, angle in enumerate(values["angle"]):
             near = found.omega[row, column] + np.linspace(-2.0, 2.0, 9)
@@ -46,6 +47,15 @@ def test_peaks_of_a_map_are_those_of_fine_curves():
     )
     axes = found.plot(length_unit="mm", ax=Figure().add_subplot())
     assert axes.get_xlabel() == "mass"
+
+
+def test_a_peak_that_is_not_found_says_why():
+    values = {"mass": [1e-3], "angle": [60.0]}
+    span = {"dof": "left.x", "omega": (95.0, 120.0)}
+    found = ss.design_map(pair, values, **span, max_harmonics=15, tolerance=1e-5)
+    assert np.isnan(found.amplitude).all()
+    assert found.status == (("harmonics limit",),)
+    assert "max_harmonics" in found.status[0][0].advice
 
 
 @pytest.mark.parametrize(

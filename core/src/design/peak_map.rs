@@ -5,7 +5,9 @@
 //! the nearest one that is known, of fewer harmonics too. This follows one branch: jumps are not looked
 //! for, as in the search for a single peak.
 
-use crate::balance::{sweep, ForcedBalance, HarmonicChoice, Point, Progress, Settings};
+use crate::balance::{
+    sweep, ForcedBalance, HarmonicChoice, Point, PointStatus, Progress, Settings,
+};
 use crate::fourier::{amplitude, Harmonics, Measure, SampleTable};
 use crate::model::Model;
 use crate::Error;
@@ -38,11 +40,13 @@ pub struct CellPeak {
     pub amplitude: f64,
     /// Highest harmonic kept.
     pub harmonics: usize,
+    /// How its search ended.
+    pub status: PointStatus,
 }
 
 impl CellPeak {
-    const fn missing(harmonics: usize) -> Self {
-        Self { omega: f64::NAN, amplitude: f64::NAN, harmonics }
+    const fn missing(harmonics: usize, status: PointStatus) -> Self {
+        Self { omega: f64::NAN, amplitude: f64::NAN, harmonics, status }
     }
 }
 
@@ -63,7 +67,8 @@ pub fn peak_map(
         .map_err(|error| Error::shape("threads", "as many as the system grants", error))?;
     let stop = AtomicBool::new(false);
     let (sender, receiver) = channel();
-    let mut found: Vec<Result<CellPeak, Error>> = vec![Ok(CellPeak::missing(0)); cells.len()];
+    let mut found: Vec<Result<CellPeak, Error>> =
+        vec![Ok(CellPeak::missing(0, PointStatus::NotComputed)); cells.len()];
     pool.in_place_scope_fifo(|scope| {
         for (index, cell) in cells.iter().enumerate() {
             let (sender, stop) = (sender.clone(), &stop);
@@ -111,7 +116,7 @@ impl Search<'_> {
     fn highest(&self, points: &[Arc<Point>], least: f64) -> Result<CellPeak, Error> {
         let heights: Vec<f64> = points.iter().map(|point| height(point)).collect();
         let at = |at: Option<usize>| at.and_then(|at| heights.get(at)).map_or(0.0, |h| h.max(0.0));
-        let mut best = CellPeak::missing(COARSE);
+        let mut best = CellPeak::missing(COARSE, unsolved(points));
         for (top, (point, &own)) in points.iter().zip(&heights).enumerate() {
             let is_top = own >= at(top.checked_sub(1)) && own >= at(Some(top + 1));
             if is_top && own >= least && (self.progress)(0.0) {
@@ -147,20 +152,25 @@ impl Search<'_> {
             }
             let heights: Vec<f64> = points.iter().map(|point| height(point)).collect();
             if heights.iter().all(|height| height.is_nan()) {
-                break;
+                return Ok(CellPeak::missing(harmonics, unsolved(&points)));
             }
             let (omega, amplitude) = vertex(&near, &heights);
             let solved = points.iter().filter(|point| point.is_solved());
             let error = solved.map(|point| point.error_estimate[0]).fold(0.0, f64::max);
             let [change, left] = SETTLED.map(|share| share * tolerance * amplitude);
             if (amplitude - before).abs() <= change && error <= left {
-                return Ok(CellPeak { omega, amplitude, harmonics });
+                return Ok(CellPeak {
+                    omega,
+                    amplitude,
+                    harmonics,
+                    status: PointStatus::Converged,
+                });
             }
             // A peak that has wandered off is followed before the grid narrows.
             step *= if near[0] < omega && omega < near[last] { 0.5 } else { 1.0 };
             (centre, before, known) = (omega, amplitude, points);
         }
-        Ok(CellPeak::missing(harmonics))
+        Ok(CellPeak::missing(harmonics, PointStatus::HarmonicsLimit))
     }
 
     fn balance(&self, harmonics: usize) -> Result<ForcedBalance<'_>, Error> {
@@ -169,6 +179,12 @@ impl Search<'_> {
         let observe = std::slice::from_ref(dof);
         Ok(ForcedBalance::new(model, settings, observe)?.watched(self.progress))
     }
+}
+
+/// How the first of some points ended that have no solution.
+fn unsolved(points: &[Arc<Point>]) -> PointStatus {
+    let first = points.iter().find(|point| !point.is_solved());
+    first.map_or(PointStatus::NotComputed, |point| point.status)
 }
 
 /// Half the range of the only DOF that is observed.

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip import _core
-from stickslip.analyses.forced_response import forced_response
 from stickslip.analyses.run import refusals
 from stickslip.checks import brief, members, real_matrix, real_number, set_fields, text
 from stickslip.errors import ModelError
@@ -59,7 +58,7 @@ def design_map(
     Returns
     -------
     DesignMap
-        Amplitude and frequency of every peak; nan where none was found.
+        Amplitude and frequency of every peak; nan where none was found, and `status` says why.
 
     Raises
     ------
@@ -88,7 +87,8 @@ def design_map(
         found = np.array(_core.peak_map(problems, span, threads or cpu_count() or 1))
     shape = tuple(map(len, values))
     columns = [column.reshape(shape) for column in found.T]
-    own = DesignMap(names, values, dof, columns[0], columns[1], columns[2].astype(np.int64))
+    harmonics, status = (column.astype(np.int64) for column in columns[2:])
+    own = DesignMap(names, values, dof, columns[0], columns[1], harmonics, status)
     set_fields(own, **vars(own))
     return own
 
@@ -103,17 +103,6 @@ def _two(parameters: object) -> tuple[tuple[str, str], tuple[NDArray[np.float64]
         np.array([real_number(one, name) for one in members(values, name, "[0.05, 0.1]")])
         for name, values in parameters.items()
     )
-
-
-def _amplitudes(
-    model: Model, dof: str, omega: NDArray[np.float64], harmonics: int
-) -> NDArray[np.float64]:
-    result = forced_response(
-        model, omega, harmonics, observe=[dof], stability=False, tolerance=1e-2
-    )
-    amplitude = np.array(result.amplitude(dof))
-    amplitude[~result.converged] = np.nan
-    return amplitude
 
 
 def spinning(

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
 from stickslip.results.fields import Float
+from stickslip.results.status import Status
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,8 +29,18 @@ class DesignMap:
     """(n, m) Angular frequency of the peak [rad/s]."""
     harmonics: NDArray[np.int64]
     """(n, m) Highest harmonic kept."""
+    codes: NDArray[np.int64]
+    """(n, m) How each search ended, as `Status.code`."""
 
     plot = Drawn("design_map")
+
+    @property
+    def status(self) -> tuple[tuple[Status, ...], ...]:
+        """How each search ended, row by row; ``status[i][j].advice`` says what to do about it.
+
+        A peak with the status "harmonics limit" was given up, and is nan.
+        """
+        return tuple(tuple(map(Status.from_code, row)) for row in self.codes.tolist())
 
     @property
     def optimum(self) -> dict[str, float]:
