@@ -129,8 +129,13 @@ def test_stable_motions_stay_and_unstable_ones_are_left(name):
     for at in chosen:
         if at in around or at in frf.folds:
             continue
-        most, left = drift(model, frf, at, 60)
-        assert left < 0.5 if frf.stable[at] else most > 1.5, (at, most, left)
+        # Beside a fold disturbances hardly grow, and take their time.
+        for periods in (60, 240):
+            most, left = drift(model, frf, at, periods)
+            told = left < 0.5 if frf.stable[at] else most > 1.5
+            if told:
+                break
+        assert told, (at, most, left)
 
 
 def random_system(rng):
