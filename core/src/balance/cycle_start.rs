@@ -57,7 +57,7 @@ fn springs(
             (law.displacements(), limits[point].is_infinite(), amplitude.is_finite())
         {
             let size = amplitude * own.contact[point].norm();
-            if let Some(spring) = law.describing(size) {
+            if let Some(spring) = law.first_harmonic(size) {
                 // A stiff spring holds what would move it: the mean of before and after settles.
                 next[(point, point)] = 0.5 * (next[(point, point)] + spring.stiffness.re);
             }
@@ -184,7 +184,7 @@ impl Onset {
         let gross = laws.iter().flat_map(|law| law.limits()).nth(point).filter(|f| f.is_finite());
         let whole = gross.filter(|_| rest.is_none()).map_or(1.0, |gross| gross / limits[point]);
         let describing = laws.iter().flat_map(|law| {
-            let own = law.describing(1.0).map(|_| Arc::from(law.with_scaled_forces(1.0)));
+            let own = law.first_harmonic(1.0).map(|_| Arc::from(law.with_scaled_forces(1.0)));
             std::iter::repeat_n(own, law.displacements())
         });
         // What never slips is a spring of the mode already.
@@ -261,7 +261,8 @@ impl Onset {
         let size = |point: usize| (1.0 + excess) * stroke(point) * self.amplitude;
         let known = self.laws.iter().enumerate().filter_map(|(point, law)| {
             let law = law.as_ref().filter(|_| size(point) > 0.0)?;
-            let own = law.describing(0.0)?.stiffness - law.describing(size(point))?.stiffness;
+            let own =
+                law.first_harmonic(0.0)?.stiffness - law.first_harmonic(size(point))?.stiffness;
             Some(stroke(point).powi(2) * own)
         });
         let known = known.sum::<c64>();

@@ -13,8 +13,10 @@ use faer::Mat;
 
 /// Longest step in v of the fourth-order scheme.
 const STEP: f64 = 0.02;
-/// Distance from the limit at which the force stays there.
-const AT_LIMIT: f64 = 1e-15;
+/// Distance from the limit at which the force stays there: closer to it rounding may stop the steps.
+const AT_LIMIT: f64 = 1e-14;
+/// Share of the stiffness that slip takes off where it has hardly begun.
+const LITTLE: f64 = 1e-12;
 
 /// A hysteresis of one number.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -127,6 +129,12 @@ impl ContactLaw for BoucWen {
 
     fn limits(&self) -> Vec<f64> {
         vec![if self.stiffness == 0.0 { 0.0 } else { self.slip_force }]
+    }
+
+    /// It slips from the first on: a force at twice of which that is little.
+    fn onsets(&self) -> Vec<f64> {
+        let little = 0.5 * LITTLE.powf(1.0 / self.exponent);
+        self.limits().iter().map(|limit| little * limit).collect()
     }
 
     fn return_map(

@@ -16,11 +16,11 @@ use super::stick_slip::Path;
 use super::{
     ContactLaw, Describing, Motion, Parameter, Parameters, Phase, PointSummary, Residual, SlipLoad,
 };
-use crate::fourier::{Harmonics, SampleTable, NODES};
+use crate::fourier::NODES;
 use crate::Error;
 use faer::{c64, Mat};
 use std::f64::consts::TAU;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 /// Reversals that the return map remembers: as many as a period has.
 const MEMORY: usize = 64;
@@ -239,28 +239,13 @@ impl ContactLaw for Masing {
 
     /// The first harmonic of a harmonic motion, and its derivative, by the integrals of any motion.
     fn describing(&self, amplitude: f64) -> Option<Describing> {
-        static TABLE: OnceLock<SampleTable> = OnceLock::new();
-        let table = TABLE.get_or_init(|| SampleTable::new(Harmonics::new(1, true)));
-        let displacement = [amplitude, 0.0];
-        let motion = Motion { table, displacement: &displacement, residual: Residual::Centred };
-        let mut load = SlipLoad::default();
-        self.slip_load(motion, true, &mut load);
-        let mut summary = [PointSummary::default()];
-        self.summary(motion, &mut summary);
-        let k = c64::new(self.curve.stiffness, 0.0);
         if amplitude == 0.0 {
+            let k = c64::new(self.curve.stiffness, 0.0);
             let zero = c64::new(0.0, 0.0);
             let rest = self.curve.loss(0.0).slope;
             return Some(Describing { stiffness: k - rest, slope: zero, slip_fraction: 0.0 });
         }
-        // q = Re Q e^{iθ} with Q = a − i b, and K = k − Q/A.
-        let q = c64::new(load.value[0], -load.value[1]);
-        let by_amplitude = c64::new(load.tangent[0], -load.tangent[2]);
-        Some(Describing {
-            stiffness: k - q / amplitude,
-            slope: (q / amplitude - by_amplitude) / amplitude,
-            slip_fraction: summary[0].slip_fraction,
-        })
+        (self as &dyn ContactLaw).under_cosine(amplitude)
     }
 }
 
