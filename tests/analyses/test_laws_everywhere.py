@@ -57,3 +57,15 @@ def test_every_law_answers_or_is_refused_by_name(name: str) -> None:
     assert np.allclose(exact.amplitude("x"), balance.amplitude("x"), rtol=1e-4)
     ss.transient(model, omega=200.0, periods=3, scheme="exact")
     assert ss.single_harmonic(model, GRID).converged.all()
+
+
+@pytest.mark.parametrize("displacement", [1e-4, 1.37e-4])
+def test_free_motions_of_a_table_are_classified_or_refused_by_name(displacement):
+    table = ss.Masing("x", backbone=([0.0, 1e-4, 3e-4, 1e-3], [0.0, 1.0, 2.0, 2.5]))
+    structure = ss.Structure(
+        np.eye(2), [[2e4, -1e4], [-1e4, 2e4]], ss.Rayleigh(mass=1.0), ["x", "y"]
+    )
+    try:
+        assert ss.classify(ss.Model(structure, [table]), {"x": displacement}).motion
+    except ss.ModelError as error:
+        assert "do not settle" in str(error)

@@ -147,11 +147,12 @@ def _tail(
     unknown = reason in (Reason.CONTRADICTION, Reason.INTERRUPTED)
     if fates.interrupted or unknown or reason.motion in (Motion.UNBOUNDED, Motion.DECAYING):
         return np.zeros((0, len(columns))), fates.interrupted
-    history = _core.transient(
-        model.problem,
-        TransientSettings(omega=omega, periods=TAIL, samples=samples),
-        fates.columns["final"][0],
-        columns,
-        lambda _: run.heed(),
-    )
+    with refusals(model):
+        history = _core.transient(
+            model.problem,
+            TransientSettings(omega=omega, periods=TAIL, samples=samples),
+            fates.columns["final"][0],
+            columns,
+            lambda _: run.heed(),
+        )
     return history.columns["displacement"][1:], history.interrupted
