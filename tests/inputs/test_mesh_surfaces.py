@@ -197,3 +197,22 @@ def test_coordinates_of_another_system_of_nastran_are_refused(tmp_path):
     path.write_text(bulk_data(False, system="4"))
     with pytest.raises(ss.ModelError, match="GRID 11: its coordinates are those of system 4"):
         ss.read_mesh(path)
+
+
+def test_a_set_of_more_numbers_than_nodes_takes_no_room(tmp_path):
+    pytest.importorskip("meshio")
+    path = tmp_path / "joint.bdf"
+    path.write_text(bulk_data(False).replace("SET1,1,15,THRU,18", "SET1,1,15,THRU,999999999999"))
+    assert sorted(ss.read_mesh(path).node_sets) == ["SET1 2"]
+
+
+@pytest.mark.parametrize(
+    "entry",
+    ["SET1,1,15,THRU", "SET1,1,18,THRU,15", "SET1,x,15", "SET1,,15", "GRID,,,0.,0.,0."],
+)
+def test_a_spoilt_entry_of_nastran_is_refused(tmp_path, entry):
+    pytest.importorskip("meshio")
+    path = tmp_path / "joint.bdf"
+    path.write_text(bulk_data(False).replace("SET1,1,15,THRU,18", entry))
+    with pytest.raises(ss.ModelError, match=r"joint\.bdf"):
+        ss.read_mesh(path)

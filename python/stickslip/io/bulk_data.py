@@ -17,22 +17,23 @@ class Bulk:
     """Numbers of the nodes in the order of the file, and the members of each set."""
 
     numbers: list[int]
-    sets: dict[str, list[int]]
+    sets: dict[str, list[range]]
 
     def node_sets(self) -> dict[str, list[int]]:
         """Return the sets by the positions of their nodes; of elements they are none."""
         place = {number: at for at, number in enumerate(self.numbers)}
+        # A range may name more numbers than memory holds; one longer than the nodes has others.
         return {
-            name: [place[one] for one in own]
+            name: [place[one] for part in own for one in part]
             for name, own in self.sets.items()
-            if own and all(one in place for one in own)
+            if own and all(len(part) <= len(place) and place.keys() >= set(part) for part in own)
         }
 
 
 def read_bulk(file: Path) -> Bulk:
     """Read the entries GRID and SET1 of bulk data."""
     numbers: list[int] = []
-    sets: dict[str, list[int]] = {}
+    sets: dict[str, list[range]] = {}
     lines = plain(file.read_bytes(), "latin-1").splitlines()
     for name, fields in _entries(lines):
         if name == "GRID":
@@ -46,15 +47,18 @@ def read_bulk(file: Path) -> Bulk:
     return Bulk(numbers, sets)
 
 
-def _members(words: list[str]) -> Iterator[int]:
-    """Give the numbers of a list in which THRU stands for all between two."""
+def _members(words: list[str]) -> Iterator[range]:
+    """Give the ranges of numbers of a list in which THRU stands for all between two."""
     at = 0
     while at < len(words):
         if at + 2 < len(words) and words[at + 1].upper() == "THRU":
-            yield from range(int(words[at]), int(words[at + 2]) + 1)
+            own = range(int(words[at]), int(words[at + 2]) + 1)
+            if not own:
+                raise ValueError(f"SET1: {words[at]} THRU {words[at + 2]} names nothing")
+            yield own
             at += 3
         else:
-            yield int(words[at])
+            yield range(int(words[at]), int(words[at]) + 1)
             at += 1
 
 
