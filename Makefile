@@ -13,7 +13,7 @@ help:
 	@echo "make demo   build, run the SNECMA beam study, say where its table, picture and files are"
 	@echo "make test   build, then all Rust and Python tests, linters and the documentation"
 	@echo "make wheel  a wheel in dist, which pip installs where there is no Rust"
-	@echo "make quick  build, then the linter and the quick Python tests: two minutes after the build"
+	@echo "make quick  build, then the linter and the quick Python tests: one minute after the build"
 	@echo "make bench  criterion benchmarks of the core and the speed tables of the package"
 	@echo "make peers  the same study with pyHarm-os, in an environment of its own"
 

@@ -63,6 +63,7 @@ def test_steps_of_the_law_go_around_the_orbit(orbits):
             assert np.ptp(motion) / 2 == pytest.approx(orbits.amplitude(dof)[index], rel=1e-3)
 
 
+@pytest.mark.slow
 def test_a_load_in_equilibrium_is_a_preload():
     """Normal force at rest and all scales agree: the same branch by another description."""
     load = np.array([0.6, -0.8]) @ np.linalg.solve([[2e4, -1e4], [-1e4, 3e4]], [0.0, -30.0])
@@ -125,6 +126,7 @@ def test_waves_of_a_disk_with_contacts_between_its_sectors():
             assert size == pytest.approx(wave.amplitude(name[2])[index], rel=2e-3)
 
 
+@pytest.mark.slow
 def test_a_static_load_that_a_cubic_spring_feels_stays():
     slider = ss.Jenkins("x", stiffness=1e4, slip_force=5.0)
     spring = ss.Cubic("z", stiffness=1e8)

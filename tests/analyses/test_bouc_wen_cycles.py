@@ -43,6 +43,7 @@ def start(law: ss.BoucWen, cycles: ss.LimitCycles, index: int) -> ss.State:
 
 
 @pytest.mark.parametrize(("exponent", "beta"), [(1.0, 0.5), (2.0, 0.9), (8.0, 0.6)])
+@pytest.mark.slow
 def test_cycles_close_in_time(exponent: float, beta: float) -> None:
     law = joint(exponent, beta)
     cycles = ss.limit_cycles(
@@ -58,6 +59,7 @@ def test_cycles_close_in_time(exponent: float, beta: float) -> None:
             assert abs(motion[-1] - motion[0]) < 1e-4 * cycles.amplitude(dof)[index]
 
 
+@pytest.mark.slow
 def test_a_large_exponent_comes_near_a_jenkins_element() -> None:
     jenkins = ss.Jenkins("a", stiffness=STIFFNESS, slip_force=SLIP_FORCE)
     options = {"negative_damping": NEGATIVE, "mode": 0, "harmonics": 9, "stability": False}

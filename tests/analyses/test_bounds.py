@@ -72,6 +72,7 @@ def test_a_normal_load_that_varies_opens_an_interval(bounded):
     assert code.data["points"] == wide.sum()
 
 
+@pytest.mark.slow
 def test_other_assumptions_lie_inside(bounded):
     for residual in ("from_rest", -1.5, -0.4, 0.3, 0.9, 2.0):
         other = ss.forced_response(pads(), GRID, 7, residual=residual, observe=["a.x"])
@@ -154,6 +155,7 @@ def test_plain_curves_have_none():
         ss.optimal_damper(pads(), parameter="friction", dof="a.x", residual="bounds")
 
 
+@pytest.mark.slow
 def test_a_contact_in_space():
     """Two tangential directions: sliders move in a plane."""
     structure = ss.Structure(
@@ -226,6 +228,7 @@ def test_a_study_file():
     assert found.settings.residual == "centred"
 
 
+@pytest.mark.slow
 def test_orbits_go_as_far_as_a_balance_of_many_harmonics(bounded):
     """What is extreme is found by few harmonics; what an orbit with it does is exact."""
     grid = GRID[:8:2]
@@ -248,6 +251,7 @@ def test_orbits_of_monotone_contacts_are_the_only_ones():
     np.testing.assert_array_equal(exact.upper("tip"), exact.amplitude("tip"))
 
 
+@pytest.mark.slow
 def test_orbits_of_a_wedge():
     """A static load presses: the past may have left more than one vibration from rest."""
     blades = (
@@ -268,6 +272,7 @@ def test_orbits_of_a_wedge():
     np.testing.assert_allclose(exact.upper("left.x"), fine.upper("left.x"), rtol=2.0 * SEARCH)
 
 
+@pytest.mark.slow
 def test_a_structural_damper_beside_a_normal_load_that_varies():
     """Its sliders are varied with the others: what a preloaded damper holds presses the pads."""
     base = pads(force=2.0)
@@ -301,6 +306,7 @@ def bounded_peaks():
     return ss.damper_curve(weakly_coupled(0.4), residual="bounds", **FRICTION)
 
 
+@pytest.mark.slow
 def test_peaks_along_a_parameter(bounded_peaks):
     """What any residual traction makes of a peak lies between its bounds."""
     curve = bounded_peaks
@@ -321,6 +327,7 @@ def test_peaks_along_a_parameter(bounded_peaks):
     assert curve.upper[2] == pytest.approx(highest.amplitude, rel=1e-4)
 
 
+@pytest.mark.slow
 def test_unique_peaks_have_no_width():
     """Where all contacts slip at the peak, and where laws are monotone."""
     curve = ss.damper_curve(weakly_coupled(2.0), residual="bounds", **FRICTION)

@@ -77,6 +77,7 @@ def respond(*contacts, omega=OMEGA, harmonics=5, **options):
     return ss.forced_response(model(*contacts), omega, harmonics, **{**MARCHED, **options})
 
 
+@pytest.mark.slow
 def test_a_jenkins_element_written_in_python():
     own = respond(Slider(["a"], ["b"], k=8e3, limit=10.0))
     element = respond(ss.Jenkins("a", "b", stiffness=8e3, slip_force=10.0))
@@ -91,6 +92,7 @@ def test_a_jenkins_element_written_in_python():
     assert own.slip_fraction("slider") == pytest.approx(element.slip_fraction(0), abs=0.02)
 
 
+@pytest.mark.slow
 def test_nodes_are_stepped_at_once():
     own = respond(Slider([["a"], ["c"]], k=8e3, limit=10.0, name="two"))
     pair = respond(*(ss.Jenkins(dof, stiffness=8e3, slip_force=10.0) for dof in "ac"))
@@ -101,6 +103,7 @@ def test_nodes_are_stepped_at_once():
     )
 
 
+@pytest.mark.slow
 def test_two_directions_are_those_of_the_compiled_contact():
     """Radial return turns by another angle in a step, less so in short ones."""
     own, exact = (
@@ -126,6 +129,7 @@ def test_two_directions_are_those_of_the_compiled_contact():
     assert errors[2] < 1e-2 * np.abs(exact[2].coefficients("c")).max()
 
 
+@pytest.mark.slow
 def test_a_sector_of_a_disk():
     def disk(*contacts):
         forces = [ss.Force("a", 30.0)]
@@ -165,6 +169,7 @@ class Dahl(ss.ContactLaw):
         return force, force, ss.Tangents(fade[..., None], -slope, slope, [[1.0]], [[0.0]])
 
 
+@pytest.mark.slow
 def test_dahls_law_against_time_integration():
     """x'' + 2 zeta omega_s x' + K x + f = P cos(omega t), f by its own differential equation."""
     from scipy.integrate import solve_ivp
@@ -192,6 +197,7 @@ def test_dahls_law_against_time_integration():
     assert result.dissipation(0)[0, 0] == pytest.approx(lost, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_ctrl_c_ends_a_law_in_python(tmp_path):
     """Within a second, and what was solved is kept."""
     script = tmp_path / "slow.py"
@@ -330,6 +336,7 @@ class TestErrors:
         lambda one: ss.forced_response(one, OMEGA, 3, **MARCHED).contact_states(0, 0),
     ],
 )
+@pytest.mark.slow
 def test_what_needs_more_refuses_the_law_by_its_name(analyse):
     with pytest.raises(ss.ModelError, match=r"slider|slip_force"):
         analyse(model(Slider(["a"], k=8e3, limit=10.0)))

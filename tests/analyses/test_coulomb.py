@@ -61,6 +61,7 @@ def test_mass_on_a_plane(response):
 
 
 @pytest.mark.parametrize("turn", [(0.0, 0.0, 0.7), (0.3, 0.0, 0.0), (1.2, -0.8, 2.0)])
+@pytest.mark.slow
 def test_frames_do_not_matter(response, turn):
     turned = ss.forced_response(plane_mass(turn), OMEGA, 31, tolerance=FINE)
     series = np.stack([turned.coefficients(dof) for dof in "xyz"], axis=-1) @ rotation(turn)
@@ -143,6 +144,7 @@ FACES = [["a.x", "a.y", "a.z"]] * 2, [["b.x", "b.y", "b.z"]] * 2
 FREQUENCIES = [150.0, 190.0]
 
 
+@pytest.mark.slow
 def test_one_contact_of_many_nodes_is_many_contacts_of_one():
     one = two_bodies([ss.Coulomb(*FACES, **NODES, name="face")])
     apart = [

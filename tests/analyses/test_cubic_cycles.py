@@ -42,6 +42,7 @@ def test_the_branch_begins_at_the_amplitude_at_which_friction_slips(cubic: float
     assert cycles.amplitude("a")[0] * 1e4 == pytest.approx(SLIP_FORCE, rel=0.05)
 
 
+@pytest.mark.slow
 def test_cycles_with_a_stiffening_spring_go_on_in_time() -> None:
     cycles = ss.limit_cycles(
         model(1e9, 0.0), negative_damping=NEGATIVE, mode=0, harmonics=21, ratio=[1.0, 3.0]

@@ -35,6 +35,7 @@ def fitted() -> ss.Fit:
     return ss.fit(model(1.0), curves(0), parameters=BOUNDS)
 
 
+@pytest.mark.slow
 def test_noisy_curves_of_exact_orbits_give_the_parameters_back(fitted):
     assert fitted.values["jenkins.stiffness"] == pytest.approx(2.1e7, rel=0.03)
     assert fitted.values["slip_force"] == pytest.approx(200.0, rel=0.02)
@@ -44,6 +45,7 @@ def test_noisy_curves_of_exact_orbits_give_the_parameters_back(fitted):
     assert contact.slip_force == fitted.values["slip_force"]
 
 
+@pytest.mark.slow
 def test_profiles_end_where_the_misfit_has_risen_to_its_limit(fitted):
     """Refits with one parameter held at an end, by an optimiser that knows nothing of profiles."""
     from scipy.optimize import minimize_scalar
@@ -68,6 +70,7 @@ def test_profiles_end_where_the_misfit_has_risen_to_its_limit(fitted):
             assert found.fun - fitted.misfit == pytest.approx(rise, rel=0.02)
 
 
+@pytest.mark.slow
 def test_covariance_agrees_with_profiles_where_the_model_bends_little(fitted):
     quick = ss.fit(model(1.0), curves(0), parameters=BOUNDS, intervals="covariance")
     for name, ends in quick.intervals.items():
@@ -75,6 +78,7 @@ def test_covariance_agrees_with_profiles_where_the_model_bends_little(fitted):
         assert ends == pytest.approx(fitted.intervals[name], abs=0.1 * width)
 
 
+@pytest.mark.slow
 def test_noise_that_is_not_given_is_estimated():
     free = ss.fit(model(1.0), curves(1, relative_noise=None), parameters=BOUNDS)
     assert free.scatter == pytest.approx(0.02, rel=0.2)
@@ -82,6 +86,7 @@ def test_noise_that_is_not_given_is_estimated():
     assert "noise-estimated" in {one.code for one in free.diagnostics}
 
 
+@pytest.mark.slow
 def test_what_the_data_do_not_determine_is_named():
     # A contact that never slips at the only level tells nothing of its slip force beyond a bound.
     found = ss.fit(model(1.0), curves(2, levels=(0.05,)), parameters=BOUNDS)
@@ -92,6 +97,7 @@ def test_what_the_data_do_not_determine_is_named():
     assert found.intervals["slip_force"][1] == pytest.approx(1000.0)
 
 
+@pytest.mark.slow
 def test_parameters_known_only_together_are_named():
     structure = BEAM.structure
     pads = [
@@ -108,12 +114,14 @@ def test_parameters_known_only_together_are_named():
     assert found.correlation("one.stiffness", "two.stiffness") < -0.98
 
 
+@pytest.mark.slow
 def test_damping_is_fitted_by_its_law():
     found = ss.fit(model(1.0), curves(3), parameters=BOUNDS | {"damping.stiffness": (1e-6, 1e-3)})
     low, high = found.intervals["damping.stiffness"]
     assert low < 2.6e-5 < high
 
 
+@pytest.mark.slow
 def test_level_is_fitted():
     tests = [one.on(model(level)) for one, level in zip(curves(4), (4.0, 16.0, 48.0), strict=True)]
     found = ss.fit(model(1.0), tests, parameters={"level": (0.5, 2.0)} | BOUNDS)
@@ -121,6 +129,7 @@ def test_level_is_fitted():
     assert found.values["level"] == pytest.approx(1.25, rel=0.02)
 
 
+@pytest.mark.slow
 def test_peaks_are_fitted():
     tests = []
     for level in (5.0, 20.0, 60.0):
@@ -142,6 +151,7 @@ def test_peaks_are_fitted():
     assert found.values["jenkins.stiffness"] == pytest.approx(2.1e7, rel=5e-3)
 
 
+@pytest.mark.slow
 def test_loops_are_fitted():
     """Loops of a Jenkins element in closed form: a march from sample to sample."""
     rng = np.random.default_rng(0)
@@ -178,6 +188,7 @@ def loop_of_sliders(amplitude, stiffness, slip_force, chi, beta, samples=400, sl
     return u, force
 
 
+@pytest.mark.slow
 def test_four_parameters_of_an_iwan_joint_follow_from_three_noisy_loops():
     rng = np.random.default_rng(3)
     true = {"stiffness": 2e6, "slip_force": 1000.0, "chi": -0.6, "beta": 0.5}
@@ -196,6 +207,7 @@ def test_four_parameters_of_an_iwan_joint_follow_from_three_noisy_loops():
         assert low < true[name] < high
 
 
+@pytest.mark.slow
 def test_laws_are_compared_by_a_criterion(fitted):
     wrong = ss.Model(
         BEAM.structure,
@@ -215,6 +227,7 @@ def test_laws_are_compared_by_a_criterion(fitted):
 
 
 @pytest.mark.parametrize("share", [0.1, 0.3, 0.7])
+@pytest.mark.slow
 def test_ctrl_c_keeps_the_best_values_so_far(share):
     def press(done):
         if done > share:
@@ -233,6 +246,7 @@ def test_ctrl_c_keeps_the_best_values_so_far(share):
     assert kept.values["slip_force"] == pytest.approx(200.0, rel=0.05)
 
 
+@pytest.mark.slow
 def test_a_fit_is_saved_and_loaded(fitted, tmp_path):
     fitted.save(tmp_path / "fit.nc")
     again = ss.load(tmp_path / "fit.nc")

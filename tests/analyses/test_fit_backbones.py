@@ -68,6 +68,7 @@ def test_intervals_hold_the_truth_in_most_seeds():
     assert 34 <= held <= 40
 
 
+@pytest.mark.slow
 def test_a_decay_in_time_gives_the_friction_back():
     """Free vibration, exact from event to event, evaluated from extreme to extreme."""
     from scipy.interpolate import CubicSpline
@@ -103,6 +104,7 @@ def test_a_decay_in_time_gives_the_friction_back():
         assert found.scatter < 1.2
 
 
+@pytest.mark.slow
 def test_any_order_and_repeated_amplitudes_are_taken():
     draw = np.random.default_rng(5).permutation(np.tile(np.arange(AMPLITUDE.size), 2))
     omega, ratio = closed_form(AMPLITUDE)
@@ -113,6 +115,7 @@ def test_any_order_and_repeated_amplitudes_are_taken():
     assert found.dofs == ("tip",)
 
 
+@pytest.mark.slow
 def test_amplitudes_of_a_degree_of_freedom_are_met():
     """Of a beam, whose shape changes as its contact slips."""
     beam = ss.reference.snecma_beam()

@@ -80,6 +80,7 @@ def test_damping_given_is_the_damping_of_the_linear_disk(seed):
         assert -root.real / abs(root) == pytest.approx(given[d], rel=1e-8)
 
 
+@pytest.mark.slow
 def test_limit_cycles_of_the_dissertation():
     model, negative = ss.reference.flutter_mass()
     (mass,), omega = model.structure.mass[0], ss.natural_frequencies(model)[0]
@@ -98,6 +99,7 @@ def test_limit_cycles_of_the_dissertation():
 
 
 @pytest.mark.parametrize(("seed", "least"), [(1, 0.1), (4, 0.0), (33, 0.02)])
+@pytest.mark.slow
 def test_a_limit_cycle_knows_how_far_it_is_from_that_of_the_whole_equations(seed, least):
     rng = np.random.default_rng(seed)
     n = int(rng.integers(3, 9))
@@ -150,6 +152,7 @@ def test_a_kick_destabilises_a_disk_that_is_stable_at_rest():
 
 
 @pytest.mark.parametrize(("diameter", "state"), [(0, "unstable"), (2, "stable")])
+@pytest.mark.slow
 def test_multipliers_are_what_the_ring_does_in_time(diameter, state):
     # the same damping forwards and backwards, so that the flow is a damping matrix of the ring
     ratios = np.array([-0.003, -0.008, -0.004, -0.008])
@@ -177,6 +180,7 @@ def test_multipliers_are_what_the_ring_does_in_time(diameter, state):
     assert growth == pytest.approx(cycle.multiplier, abs=4e-3)
 
 
+@pytest.mark.slow
 def test_waves_are_stable_in_the_ring_or_not():
     disk = one_dof(6, GROUND)
     flow = ss.AerodynamicDamping(ratio=RATIOS)
@@ -203,6 +207,7 @@ def test_limits_over_aerodynamic_damping():
     assert np.isnan(grid[:, 1]).all()
 
 
+@pytest.mark.slow
 def test_files_and_figures(tmp_path):
     disk = one_dof(6, GROUND)
     found = ss.flutter_map(disk, ss.AerodynamicDamping(ratio=RATIOS), harmonics=3)

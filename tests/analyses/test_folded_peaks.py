@@ -37,6 +37,7 @@ def behind_a_gap():
 SPAN = (40.75, 135.84)
 
 
+@pytest.mark.slow
 def test_damper_curves_find_the_branch_behind_a_fold(behind_a_gap):
     curve = ss.forced_response(behind_a_gap, SPAN)
     assert len(curve.folds) >= 2

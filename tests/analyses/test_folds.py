@@ -32,6 +32,7 @@ CASES = {
 
 
 @pytest.mark.parametrize("name", CASES)
+@pytest.mark.slow
 def test_folds_are_those_of_a_fine_continuation(name):
     system, (start, stop), harmonics, count = CASES[name]
     expected, _ = Balance(system, harmonics).folds(start, stop)
@@ -118,6 +119,7 @@ def drift(model, frf, index, periods, steps=400):
 
 
 @pytest.mark.parametrize("name", ["hardening", "softening", "stop"])
+@pytest.mark.slow
 def test_stable_motions_stay_and_unstable_ones_are_left(name):
     system, span, _, _ = CASES[name]
     model = system.model()

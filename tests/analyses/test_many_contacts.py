@@ -72,6 +72,7 @@ def friction_plate(count: int) -> ss.Model:
     return ss.Model(structure, pads, forces)
 
 
+@pytest.mark.slow
 def test_contacts_that_slip_and_lift_off_are_those_of_receptances() -> None:
     model = friction_plate(40)
     omega = np.linspace(300.0, 330.0, 4)
@@ -95,6 +96,7 @@ def test_contacts_that_slip_and_lift_off_are_those_of_receptances() -> None:
     assert opens.max() > 0.0
 
 
+@pytest.mark.slow
 def test_a_body_that_walks_says_so_early() -> None:
     """A block on friction alone, pushed by more than friction keeps while it vibrates."""
     plate = friction_plate(40)

@@ -57,6 +57,7 @@ def test_peaks_of_no_mass():
     np.testing.assert_allclose(none.amplitude, light.amplitude, rtol=1e-5)
 
 
+@pytest.mark.slow
 def test_automatic_harmonics_of_no_mass():
     """What kinks leave out is in the estimate; a point that would cost too much says so."""
     model = wedge(0.0)
@@ -99,6 +100,7 @@ def sheared(damper):
 
 
 @pytest.mark.parametrize("stiffness", [(150.0, 90.0), (80.0, 200.0)])
+@pytest.mark.slow
 def test_no_mass_is_the_structural_damper(stiffness):
     """Where no face opens and normal forces are constant; exact orbits need a little inertia."""
     friction = (0.3, 0.5)

@@ -64,6 +64,7 @@ def chain(omega=108.0):
     return model(*own, force=4.0, size=4, damping=0.02), omega
 
 
+@pytest.mark.slow
 def test_a_chain_of_joints_vibrates_as_its_integration_in_time_does():
     own, omega = chain()
     balance = ss.forced_response(own, [omega], 21)
@@ -278,6 +279,7 @@ def cycles(method, contacts, **options):
     return ss.limit_cycles(own, negative_damping=negative, mode=0, method=method, **options)
 
 
+@pytest.mark.slow
 def test_exact_limit_cycles_are_those_of_the_balance():
     joints = [iwan("a", slip_force=1.0), exponential("a", "b", slip_force=0.5)]
     exact = cycles("exact", joints, ratio=[1.0])
@@ -290,6 +292,7 @@ def test_exact_limit_cycles_are_those_of_the_balance():
     )
 
 
+@pytest.mark.slow
 def test_cycles_that_grow_fast_are_closed_over_several_segments():
     # Mode 1 grows by 1e10 in half a period: one stretch of the flow cannot be steered.
     stiffness, damping = [[1.2e4, -10.0], [-10.0, 4e4]], 0.2 * np.eye(2)
@@ -303,6 +306,7 @@ def test_cycles_that_grow_fast_are_closed_over_several_segments():
 
 
 @pytest.mark.parametrize("law", [iwan(slip_force=1.0), exponential(slip_force=1.0)])
+@pytest.mark.slow
 def test_branches_pass_where_a_reversal_meets_the_begin_of_the_orbit(law):
     coupled = ss.Structure(
         np.eye(2), [[1.02e4, -200.0], [-200.0, 1.02e4]], 0.2 * np.eye(2), ["a", "b"]
@@ -332,6 +336,7 @@ def test_branches_pass_where_a_reversal_meets_the_begin_of_the_orbit(law):
         ([iwan("a", chi=-0.97, beta=0.4), exponential("a", "b")], 2.5),
     ],
 )
+@pytest.mark.slow
 def test_branches_begin_where_several_contacts_slip_little_by_little(contacts, negative):
     options = {"negative_damping": -np.diag([negative, 1.0]), "mode": 0, "stability": False}
     own = ss.Model(structure(damping=0.01), contacts, [])
@@ -341,6 +346,7 @@ def test_branches_begin_where_several_contacts_slip_little_by_little(contacts, n
 
 
 @pytest.mark.parametrize("method", ["newton", "exact"])
+@pytest.mark.slow
 def test_ratios_beyond_the_limit_are_said_to_have_no_cycle(method):
     found = cycles(method, [iwan()], ratio=[1.0, 1e3])
     assert found.ratio.tolist() == [1.0, 1.0]

@@ -49,6 +49,7 @@ def test_random_joints_are_solved_or_say_why_not():
         assert (mode.arrays.residual[solved] < 1e-6).all()
 
 
+@pytest.mark.slow
 def test_corners_of_random_joints_are_passed():
     for seed in range(40):
         model, mode = jointed(np.random.default_rng([11, seed]))

@@ -99,6 +99,7 @@ def test_a_wedge_whose_contact_sticks_with_the_traction_of_another_code(log, her
     assert mode.damping_ratio[0] == pytest.approx(ratio, rel=2e-4)
 
 
+@pytest.mark.slow
 def test_bounds_over_residual_tractions():
     # -μN and its opposite, and none, of contact 1, which sticks up to lg a = -2.3
     logs = np.array([-2.9, -2.8, -2.7, -2.5, -2.3, -2.0])

@@ -79,6 +79,7 @@ class Balance:
 
 
 @pytest.mark.parametrize("mode", [0, 1, 2])
+@pytest.mark.slow
 def test_a_mode_goes_through_lift_off_where_plain_newton_ends(mode):
     model, amplitudes = wedge(), 10.0 ** np.linspace(-4.0, 0.0, 9)
     ours = ss.nonlinear_modes(

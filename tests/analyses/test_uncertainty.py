@@ -148,6 +148,7 @@ def test_ishigami():
     assert error < expansion.cross_validation < 1e-3
 
 
+@pytest.mark.slow
 def test_parameters_without_bounds_have_hermite_polynomials():
     laws = (stats.norm(2.0, 0.5), stats.lognorm(0.3, scale=4.0))
     shares = drawn_shares("sobol", 2, 128, seed=3)
@@ -446,6 +447,7 @@ def test_figures_say_how_many_failed(study):
     assert ax.get_title() == "12 samples"
 
 
+@pytest.mark.slow
 def test_bars_of_the_shares(rubbing):
     ax = rubbing.plot_sobol("amplitude")
     named = [label.get_text() for label in ax.get_xticklabels()]

@@ -138,6 +138,7 @@ harmonics = 3
 """
 
 
+@pytest.mark.slow
 def test_a_study_file_makes_the_same_contact(tmp_path):
     (tmp_path / "pad.toml").write_text(STUDY)
     study = Study.load(tmp_path / "pad.toml")

@@ -132,6 +132,7 @@ def test_normal_forces_bear_the_load():
     assert seen.work == 0.0
 
 
+@pytest.mark.slow
 def test_one_contact_of_many_nodes_is_many_contacts():
     interface, reduced, _ = pressed_block(nx=1, ny=1)
     many = interface.contact(**LAWS, pressure=5e6)

@@ -107,6 +107,7 @@ def test_what_moves_together_feels_no_contact(name, translation):
 
 
 @given(st.floats(-3.0, 3.0), st.floats(-1.0, 1.0), st.floats(-1.0, 1.0))
+@pytest.mark.slow
 def test_turning_together_feels_no_contact(angle, x, y):
     """Neighbours that turn with the body about any point."""
     damper = replace(WEDGE, inertia=2e-5, positions=TURNING)

@@ -235,6 +235,7 @@ anything = st.recursive(
     key=st.sampled_from(["dofs", "other", "normal", "preload", "gap", "areas", *VALUES]),
     value=anything,
 )
+@pytest.mark.slow
 def test_anything_is_taken_or_refused(key, value):
     try:
         contact = pad(**{key: value})

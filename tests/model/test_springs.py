@@ -121,6 +121,7 @@ def test_a_stop_alone_holds_a_static_load():
         ss.forced_response(open_, [0.5])
 
 
+@pytest.mark.slow
 def test_disks_with_springs_bend_their_tuned_and_mistuned_curves_alike():
     sector = ss.Structure(
         np.eye(2), [[2.0, -1.0], [-1.0, 1.5]], damping=0.02 * np.eye(2), dofs=["tip", "root"]

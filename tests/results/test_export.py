@@ -385,6 +385,7 @@ def test_response_functions_are_those_of_one_force(results, tmp_path):
         both.export(tmp_path / "a.uff")
 
 
+@pytest.mark.slow
 def test_pandas_waits_for_its_use():
     code = "import sys, stickslip.results.export; print('pandas' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

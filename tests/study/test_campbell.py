@@ -47,6 +47,7 @@ def blade(speed):
     return ss.Model(structure, forces=[ss.Force("tip", 1.0)])
 
 
+@pytest.mark.slow
 def test_crossings_are_where_the_order_meets_the_frequency():
     found = ss.campbell(blade, speed=np.linspace(50.0, 250.0, 4001), orders=[2, 4])
     # E^2 W^2 = 4e4 + 2 W^2
@@ -257,6 +258,7 @@ def test_reports_draw_them(tmp_path):
     assert titles == ["rotor speed [rpm]", "nodal diameter"]
 
 
+@pytest.mark.slow
 def test_aerodynamic_damping_takes_percent_and_waves_that_decay_leave_no_empty_axes():
     kind = 'kind = "flutter-map"\ndamping_ratio = '
     written = f"{kind}{['0.2 %'] * 24}".replace("'", '"')

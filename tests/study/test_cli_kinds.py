@@ -299,6 +299,7 @@ def test_points_may_be_positions():
     assert told[-1] == 1.0
 
 
+@pytest.mark.slow
 def test_the_schema_has_every_kind():
     schema = json.dumps(json.loads(invoke("schema").stdout))
     for kind in ("forced-response", "exact", "transient", "certify"):

@@ -199,6 +199,7 @@ def test_an_exported_study_gives_the_same_curve(study, tmp_path, monkeypatch):
 # --------------------------------------------------------------------------------- what is computed
 
 
+@pytest.mark.slow
 def test_panes_come_in_the_order_of_the_page(session, tmp_path):
     file = tmp_path / "two.toml"
     file.write_text(TWO)
@@ -251,6 +252,7 @@ def test_the_newest_position_wins(session):
         ({"stiffness": 1e308}, "entries of absurd size"),
     ],
 )
+@pytest.mark.slow
 def test_what_the_library_refuses_stands_on_the_page(session, tmp_path, values, said):
     file = tmp_path / "small.toml"
     file.write_text(SMALL)
@@ -316,6 +318,7 @@ def test_only_finite_numbers_are_taken(session, value):
     assert "values" in told[0]["refused"]
 
 
+@pytest.mark.slow
 def test_a_picture_has_all_that_is_shown(session, tmp_path):
     file = tmp_path / "small.toml"
     file.write_text(SMALL)

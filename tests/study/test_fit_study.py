@@ -69,6 +69,7 @@ def folder(tmp_path):
     return tmp_path
 
 
+@pytest.mark.slow
 def test_a_study_fits_files(folder):
     (result,) = Study.load(folder / "study.toml").run()
     assert result.values["pad.stiffness"] == pytest.approx(4000.0, rel=0.02)
@@ -77,6 +78,7 @@ def test_a_study_fits_files(folder):
     assert result.names == ("low", "high")
 
 
+@pytest.mark.slow
 def test_the_command_tabulates_draws_and_reports(folder, monkeypatch):
     monkeypatch.chdir(folder)
     done = CliRunner().invoke(app, ["run", "study.toml", "--out", "out"])
@@ -91,6 +93,7 @@ def test_the_command_tabulates_draws_and_reports(folder, monkeypatch):
     assert next((folder / "out").glob("*.png")).stat().st_size > 0
 
 
+@pytest.mark.slow
 def test_a_backbone_is_a_file_of_three_columns(folder):
     structure = ss.Structure([[1.0]], [[1e4]], ss.ModalDamping(0.005), ["tip"])
     pad = ss.Jenkins("tip", stiffness=4000.0, slip_force=1.0)

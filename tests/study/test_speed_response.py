@@ -86,6 +86,7 @@ def test_the_disk_says_the_order_and_rubs_as_its_response_curve_does():
     assert any("All sectors are equal" in text for text in found.assumptions)
 
 
+@pytest.mark.slow
 def test_its_table_and_picture(tmp_path, monkeypatch):
     (found,) = Study.parse(BLADE + ORDER).run()
     (table,) = view_of([found]).tables([("", found)], "", ["tip"], "m")

@@ -237,6 +237,7 @@ def test_nonsense_in_a_study_is_named(table, message):
         list(Study.parse(STUDY + f"[sweep]\n{table}").run())
 
 
+@pytest.mark.slow
 def test_run_saves_one_file(tmp_path, monkeypatch):
     from typer.testing import CliRunner
 
