@@ -374,8 +374,7 @@ impl Walk<'_, '_> {
         let bend = 0.25 * step / (step + earlier);
         let own = |point: &Point, dof: usize, order: usize| {
             let orders = point.harmonics + 1;
-            let kept = order < orders;
-            if kept {
+            if order < orders {
                 point.displacement[dof * orders + order]
             } else {
                 c64::new(0.0, 0.0)

@@ -5,6 +5,7 @@ mod harmonics;
 mod instants;
 mod interval_sums;
 mod panel;
+mod row_sums;
 mod turning_points;
 
 pub use gradient::amplitude_gradient;

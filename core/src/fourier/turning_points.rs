@@ -1,8 +1,8 @@
 //! Turning points of a trigonometric series: bracketed on samples, then located exactly.
 
 use super::instants::Instants;
+use super::row_sums::{padded, RowSums};
 use super::Harmonics;
-use pulp::{Simd, WithSimd};
 use std::sync::Arc;
 
 /// Samples per period and harmonic on which turning points are bracketed. A polynomial of degree
@@ -11,9 +11,6 @@ const SAMPLES_PER_HARMONIC: usize = 64;
 
 /// Samples that are looked at together.
 const BLOCK: usize = 32;
-
-/// Samples that are summed together.
-const LANES: usize = 16;
 
 /// Distance of the samples of [`SampleTable::jets`] on that grid, and of all samples of a coarse table.
 const COARSER: usize = 4;
@@ -361,43 +358,7 @@ fn zero_between([here, next, after]: [f64; 3]) -> f64 {
     }
 }
 
-/// Length of a row of the table: whole vectors.
-fn padded(length: usize) -> usize {
-    length.next_multiple_of(LANES)
-}
-
 fn halves(sums: &[f64], length: usize) -> [&[f64]; 2] {
     let (first, second) = sums.split_at(length);
     [first, second]
-}
-
-/// Sums of multiples of rows that begin at the given positions, with the vector instructions there
-/// are: one block of samples after the other, so that its sums stay in registers.
-struct RowSums<'a> {
-    tables: [&'a [f64]; 2],
-    rows: &'a [(usize, [f64; 2])],
-    sums: [&'a mut [f64]; 2],
-}
-
-impl WithSimd for RowSums<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        for (table, (i, sums)) in self.tables.into_iter().zip(self.sums.into_iter().enumerate()) {
-            for (block, out) in sums.chunks_exact_mut(LANES).enumerate() {
-                let (out, _) = S::as_mut_simd_f64s(out);
-                let mut sum = [simd.splat_f64s(0.0); LANES];
-                for (first, factors) in self.rows {
-                    let factor = simd.splat_f64s(factors[i]);
-                    let at = first + block * LANES;
-                    let (row, _) = S::as_simd_f64s(&table[at..at + LANES]);
-                    for (sum, value) in sum.iter_mut().zip(row) {
-                        *sum = simd.mul_add_e_f64s(factor, *value, *sum);
-                    }
-                }
-                out.copy_from_slice(&sum[..out.len()]);
-            }
-        }
-    }
 }

@@ -1,18 +1,18 @@
 //! The branch of limit cycles of a mode: from the stuck limit through the fold to the slipping side.
 
 use super::cycle_orbits::CycleOrbits;
-use super::cycles::{relative, Cycle, CycleSettings, LimitCycles, Turn, RARE};
+use super::cycles::{relative, Cycle, CycleSettings, LimitCycles, RARE};
 use super::limit_cycle::OrbitCurve;
 use super::orbit_postprocess::postprocess;
 use super::quadrature::Quadrature;
-use super::sides::{extreme, joined, value, Sides};
+use super::sides::{joined, value, Sides};
 use super::stability::{judge, judge_along, Judge, TRACING};
 use crate::balance::{
     oscillation, with_history, CycleBalance, HarmonicChoice, Onset, Point, PointStatus, Progress,
 };
 use crate::fourier::{Harmonics, SampleTable};
 use crate::model::{FlutterModel, Model, NegativeDamping, Variation};
-use crate::solve::{at_parameter, tangent, Bounds, Branch, Curve, End, Steps};
+use crate::solve::{at_parameter, tangent, Bounds, Branch, Curve, Steps};
 use crate::timing::Profile;
 use crate::Error;
 use faer::c64;
@@ -110,7 +110,7 @@ impl Finder<'_> {
             };
             let start = sides.branch.points.first().cloned().unwrap_or_default();
             let mut curve = CycleBalance::new(self.family, &table, &start, interrupted);
-            let selected = self.select(&mut curve, &sides);
+            let selected = sides.select(self.settings.values.as_deref(), &mut curve);
             let beyond = self.table(highest + (highest / 2).max(4));
             let mut cycles = Vec::with_capacity(selected.len());
             let mut beyond_tolerance = 0;
@@ -185,7 +185,7 @@ impl Finder<'_> {
         let mut of_ratio = OrbitCurve::new(&of_ratio, scale, &begin, interrupted);
         let mut curve = OrbitCurve::new(orbits, scale, &begin, interrupted);
         let sides = self.follow(&mut of_ratio, &mut curve, begin, &crate::solve::norm, scale)?;
-        let selected = self.select(&mut curve, &sides);
+        let selected = sides.select(self.settings.values.as_deref(), &mut curve);
         let reported = self.table(self.settings.reported);
         let mut quadrature = Quadrature::default();
         let mut cycles = Vec::with_capacity(selected.len());
@@ -297,23 +297,10 @@ impl Finder<'_> {
                 Bounds { range: (lowest, settings.range.1), most: settings.most, ends: &endless };
             let sudden = self.family.is_symmetric() && self.onset.whole <= 1.0;
             let sign = if sudden { 1.0 } else { rising(curve, &start, moved) };
-            let mut branch = Branch::continue_branch(curve, start, sign, steps, &bounds);
-            let limit = extreme(&branch, 1.0);
-            let ends = [End::Range, branch.end];
+            let branch = Branch::continue_branch(curve, start, sign, steps, &bounds);
             // What lies below the range served to get started.
-            let low = settings.range.0;
-            if settings.values.is_none() && limit.is_some_and(|at| value(&branch.points[at]) > low)
-            {
-                let outside = branch.points.iter().take_while(|z| value(z) < low).count();
-                branch.points.drain(..outside);
-                branch.folds.retain_mut(|fold| {
-                    *fold = fold.wrapping_sub(outside);
-                    *fold < branch.points.len()
-                });
-            }
-            // Where the branch has come back, a farther turn may have been missed.
-            let limit = extreme(&branch, 1.0).filter(|_| branch.end != End::Returned);
-            return Ok(Sides { branch, limit, ends });
+            let low = settings.values.is_none().then_some(settings.range.0);
+            return Ok(Sides::upwards(branch, low.unwrap_or(f64::NEG_INFINITY)));
         }
         let own = self.family.own_value().ok_or_else(|| {
             let got = "different ones; follow a factor on them";
@@ -344,26 +331,6 @@ impl Finder<'_> {
         Ok(joined(up, down))
     }
 
-    /// The points wanted, each with whether it lies on the slipping side.
-    fn select(&self, curve: &mut dyn Curve, sides: &Sides) -> Vec<(bool, Vec<f64>)> {
-        let slipping = |position: usize| sides.limit.is_some_and(|limit| position >= limit);
-        let points = &sides.branch.points;
-        let Some(values) = &self.settings.values else {
-            let beyond = |at: usize| sides.limit.is_some_and(|limit| at > limit);
-            return points.iter().enumerate().map(|(at, z)| (beyond(at), z.clone())).collect();
-        };
-        let mut found: Vec<(usize, Vec<f64>)> =
-            values.iter().flat_map(|value| sides.branch.at(curve, *value)).collect();
-        let progress = |(position, z): &(usize, Vec<f64>)| -> f64 {
-            let from = value(&points[*position]);
-            let to = points.get(position + 1).map_or(from, |z| value(z));
-            let share = (value(z) - from) / (to - from);
-            *position as f64 + if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 }
-        };
-        found.sort_by(|a, b| progress(a).total_cmp(&progress(b)));
-        found.into_iter().map(|(position, z)| (slipping(position), z)).collect()
-    }
-
     fn cycle(&self, z: &[f64], slipping: bool, response: Point) -> Cycle {
         let value = value(z);
         let model = self.family.model();
@@ -384,19 +351,13 @@ impl Finder<'_> {
     }
 
     fn result(&self, sides: &Sides, cycles: Vec<Cycle>, harmonics: usize) -> LimitCycles {
-        let points = &sides.branch.points;
-        let turn = |at: usize| {
-            let z = points.get(at)?;
-            Some(Turn { value: value(z), omega: z[z.len() - 2] })
-        };
-        let ends = [points.first(), points.last()].map(|z| z.map_or(f64::NAN, |z| value(z)));
         LimitCycles {
             cycles,
-            limit: sides.limit.and_then(turn),
-            folds: sides.branch.folds.iter().filter_map(|at| turn(*at)).collect(),
+            limit: sides.limit.and_then(|at| sides.turn(at)),
+            folds: sides.branch.folds.iter().filter_map(|at| sides.turn(*at)).collect(),
             changes: Vec::new(),
             ends: sides.ends,
-            end_values: ends,
+            end_values: sides.end_values(),
             onset: self.onset.ratio,
             stuck_omega: self.onset.mode.omega,
             phase_dof: self.onset.dof,

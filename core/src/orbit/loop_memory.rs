@@ -8,6 +8,7 @@
 //! of the period is followed, of what the sectors behind have done in it. The origin of the first loading
 //! says what elements hold that never slip.
 
+use super::remembered_turns::{RememberedTurns, Reversal};
 use super::rotation::Rotation;
 use crate::contact::{LoadingCurve, PointState, Residual, REVERSALS};
 use crate::motion::{
@@ -26,27 +27,6 @@ struct Piece {
     end: Vec<f64>,
     /// Derivative of the reversals in all unknowns at its start, these as displacements.
     slopes: Vec<Vec<Vec<f64>>>,
-}
-
-/// A reversal of the period.
-#[derive(Debug, Clone, Copy)]
-struct Reversal {
-    piece: usize,
-    contact: usize,
-    /// Among those of its contact in the piece.
-    number: usize,
-    /// −1 where its mirror image is meant.
-    sign: f64,
-    /// Displacement \[m\].
-    at: f64,
-}
-
-/// Reversals that one contact remembers at an instant.
-#[derive(Debug, Clone, Default)]
-struct List {
-    /// Largest and least of the period; under half-wave symmetry none.
-    outermost: Option<[Reversal; 2]>,
-    kept: Vec<Reversal>,
 }
 
 /// The memory of all contacts without sliders.
@@ -69,7 +49,7 @@ pub(super) struct LoopMemory {
     count: usize,
     pieces: Vec<Piece>,
     /// Before the first piece and behind each one, of each contact.
-    lists: Vec<Vec<List>>,
+    lists: Vec<Vec<RememberedTurns>>,
 }
 
 impl LoopMemory {
@@ -225,7 +205,7 @@ impl LoopMemory {
     }
 
     /// The reversals that count at an instant.
-    fn list(&self, instant: usize, contact: usize) -> Option<List> {
+    fn list(&self, instant: usize, contact: usize) -> Option<RememberedTurns> {
         let history = self.history(instant, contact);
         let turns: Vec<Reversal> = history
             .iter()
@@ -242,43 +222,7 @@ impl LoopMemory {
             .collect();
         let &(piece, source, sign) = history.last()?;
         let now = sign * self.pieces[piece].end[source];
-        let most = |of: &dyn Fn(f64) -> f64| {
-            (0..turns.len()).max_by(|a, b| of(turns[*a].at).total_cmp(&of(turns[*b].at)))
-        };
-        let (mut kept, outermost, next) = if self.half_wave {
-            let largest = most(&f64::abs)?;
-            (vec![turns[largest]], None, largest + 1)
-        } else {
-            let (high, low) = (most(&|u| u)?, most(&|u| -u)?);
-            if high == low {
-                return None;
-            }
-            let (first, second) = (high.min(low), high.max(low));
-            (vec![turns[first], turns[second]], Some([turns[high], turns[low]]), second + 1)
-        };
-        let outer = kept.len();
-        let close = |kept: &mut Vec<Reversal>, u: f64| {
-            while kept.len() > outer.max(1) {
-                let [.., before, last] = kept[..] else { break };
-                let sign = 1.0_f64.copysign(before.at - last.at);
-                if sign * (u - before.at) < 0.0 || kept.len() < outer + 2 {
-                    break;
-                }
-                kept.truncate(kept.len() - 2);
-            }
-        };
-        for turn in &turns[next..] {
-            close(&mut kept, turn.at);
-            kept.push(*turn);
-        }
-        close(&mut kept, now);
-        while kept.len() > REVERSALS {
-            let way = |i: usize| (kept[i + 1].at - kept[i].at).abs();
-            let inner = outer..kept.len() - 1;
-            let least = inner.min_by(|a, b| way(*a).total_cmp(&way(*b)))?;
-            kept.drain(least..least + 2);
-        }
-        Some(List { outermost, kept })
+        RememberedTurns::new(&turns, now, self.half_wave)
     }
 
     /// Place of a reversal among those that were known where a piece began; none of one of the piece.

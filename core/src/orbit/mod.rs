@@ -18,6 +18,7 @@ mod period_map;
 mod periodic;
 mod price;
 mod quadrature;
+mod remembered_turns;
 mod rescue;
 mod residual;
 mod rotation;

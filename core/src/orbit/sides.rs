@@ -1,6 +1,7 @@
 //! A branch of limit cycles as points, with its two sides.
 
-use crate::solve::{Branch, End};
+use super::cycles::Turn;
+use crate::solve::{Branch, Curve, End};
 
 /// A branch with what tells its sides apart.
 pub(super) struct Sides {
@@ -20,6 +21,61 @@ impl Default for Sides {
             jumps: 0,
         };
         Self { branch, limit: None, ends: [End::Interrupted; 2] }
+    }
+}
+
+impl Sides {
+    /// The sides of a branch that was followed upwards in the scalar, without what lies before `low` on
+    /// the way to its limit. A branch that has come back has none: a farther turn may have been missed.
+    pub(super) fn upwards(mut branch: Branch, low: f64) -> Self {
+        let limit = extreme(&branch, 1.0);
+        if limit.is_some_and(|at| value(&branch.points[at]) > low) {
+            let outside = branch.points.iter().take_while(|z| value(z) < low).count();
+            branch.points.drain(..outside);
+            branch.folds.retain_mut(|fold| {
+                *fold = fold.wrapping_sub(outside);
+                *fold < branch.points.len()
+            });
+        }
+        let limit = extreme(&branch, 1.0).filter(|_| branch.end != End::Returned);
+        let ends = [End::Range, branch.end];
+        Self { branch, limit, ends }
+    }
+
+    /// Where the branch is at a position.
+    pub(super) fn turn(&self, at: usize) -> Option<Turn> {
+        let z = self.branch.points.get(at)?;
+        Some(Turn { value: value(z), omega: z[z.len() - 2] })
+    }
+
+    /// The scalar at both ends.
+    pub(super) fn end_values(&self) -> [f64; 2] {
+        let points = &self.branch.points;
+        [points.first(), points.last()].map(|z| z.map_or(f64::NAN, |z| value(z)))
+    }
+
+    /// The points wanted, each with whether it lies on the slipping side; without `values` all of them.
+    pub(super) fn select(
+        &self,
+        values: Option<&[f64]>,
+        curve: &mut dyn Curve,
+    ) -> Vec<(bool, Vec<f64>)> {
+        let slipping = |position: usize| self.limit.is_some_and(|limit| position >= limit);
+        let points = &self.branch.points;
+        let Some(values) = values else {
+            let beyond = |at: usize| self.limit.is_some_and(|limit| at > limit);
+            return points.iter().enumerate().map(|(at, z)| (beyond(at), z.clone())).collect();
+        };
+        let mut found: Vec<(usize, Vec<f64>)> =
+            values.iter().flat_map(|value| self.branch.at(curve, *value)).collect();
+        let progress = |(position, z): &(usize, Vec<f64>)| -> f64 {
+            let from = value(&points[*position]);
+            let to = points.get(position + 1).map_or(from, |z| value(z));
+            let share = (value(z) - from) / (to - from);
+            *position as f64 + if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 }
+        };
+        found.sort_by(|a, b| progress(a).total_cmp(&progress(b)));
+        found.into_iter().map(|(position, z)| (slipping(position), z)).collect()
     }
 }
 
