@@ -4,6 +4,7 @@
 pub mod coupled;
 pub mod damper;
 pub mod differences;
+pub mod masing;
 pub mod node;
 pub mod passive;
 pub mod planar;
