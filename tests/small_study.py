@@ -24,3 +24,32 @@ omega = {from = 1, to = 30, points = 5}
 harmonics = 3
 """
 SMALL = STRUCTURE + ONE_CONTACT + ONE_FORCE + ANALYSIS
+
+# A mass with a pad that rubs.
+PAD = """
+[structure]
+mass = [[1.0]]
+stiffness = [[1e4]]
+damping = {modal = 0.005}
+dofs = ["tip"]
+
+[[contact]]
+law = "jenkins"
+name = "pad"
+dof = "tip"
+stiffness = 2000
+slip_force = 2
+
+[[force]]
+dof = "tip"
+amplitude = "1 N"
+"""
+
+# Two masses.
+TWO_MASSES = """
+[structure]
+mass = [[1.0, 0.0], [0.0, 1.0]]
+stiffness = [[2.0, -1.0], [-1.0, 2.0]]
+damping = { modal = "1 %" }
+dofs = ["tip", "root"]
+"""

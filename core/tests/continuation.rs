@@ -16,10 +16,6 @@ impl Curve for Fold {
         2
     }
 
-    fn parameter(&self, _: &[f64]) -> usize {
-        1
-    }
-
     fn residual(&mut self, z: &[f64], out: &mut [f64]) {
         let x = z[0];
         let height = if self.smooth { x * x } else { x.abs() + 0.25 * x * x };
@@ -79,10 +75,6 @@ impl<F: Fn(f64, f64) -> [f64; 3]> Curve for Plane<F> {
         2
     }
 
-    fn parameter(&self, _: &[f64]) -> usize {
-        1
-    }
-
     fn residual(&mut self, z: &[f64], out: &mut [f64]) {
         out[0] = self.0(z[0], z[1])[0];
     }
@@ -140,10 +132,6 @@ struct Loop;
 impl Curve for Loop {
     fn unknowns(&self) -> usize {
         3
-    }
-
-    fn parameter(&self, _: &[f64]) -> usize {
-        2
     }
 
     fn scalars(&self, _: &[f64]) -> usize {

@@ -4,20 +4,15 @@
 
 mod common;
 
+use common::curves::{amplitude_of, fixed};
 use common::{beam_pair, snecma_beam, System};
-use stickslip_core::balance::{
-    refine_peak, sweep, ForcedBalance, HarmonicChoice, PointStatus, Settings,
-};
+use stickslip_core::balance::{refine_peak, sweep, ForcedBalance, PointStatus, Settings};
 use stickslip_core::design::{optimum, peak_curve, Target};
 use stickslip_core::fourier::Measure;
 use stickslip_core::model::{ParameterMode, Variation};
 use stickslip_core::Model;
 
 const SPAN: (f64, f64) = (150.0, 240.0);
-
-fn fixed(highest: usize) -> Settings {
-    Settings { harmonics: HarmonicChoice::Fixed(highest), ..Settings::default() }
-}
 
 fn slip_force(contacts: &[usize], common: ParameterMode) -> Variation {
     let contacts = contacts.iter().map(|&contact| (contact, None)).collect();
@@ -34,22 +29,8 @@ fn dense_peak(model: &Model, settings: Settings, dof: usize, points: usize) -> (
     let step = (SPAN.1 - SPAN.0) / (points - 1) as f64;
     let omega: Vec<f64> = (0..points).map(|i| SPAN.0 + i as f64 * step).collect();
     let solution = sweep(ForcedBalance::new(model, settings, &observe).unwrap(), &omega).unwrap();
-    let size = |i: usize| {
-        let point = &solution.points[i];
-        let table = stickslip_core::fourier::SampleTable::new(
-            stickslip_core::fourier::Harmonics::new(point.harmonics, solution.half_wave),
-        );
-        let harmonics = table.harmonics();
-        let mut series = vec![0.0; harmonics.slots()];
-        for order in harmonics.orders() {
-            let slot = harmonics.slot(order).unwrap();
-            series[slot] = point.displacement[order].re;
-            if order > 0 {
-                series[slot + 1] = -point.displacement[order].im;
-            }
-        }
-        stickslip_core::fourier::amplitude(&table, &series, Measure::HalfRange)
-    };
+    let size =
+        |i: usize| amplitude_of(&solution.points[i], solution.half_wave, 0, Measure::HalfRange);
     let heights: Vec<f64> = (0..points).map(size).collect();
     let best = (0..points).max_by(|&a, &b| heights[a].total_cmp(&heights[b])).unwrap();
     let bracket = [omega[best.saturating_sub(1)], omega[best], omega[(best + 1).min(points - 1)]];

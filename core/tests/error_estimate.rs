@@ -4,26 +4,10 @@
 
 mod common;
 
-use common::{snecma_beam, System};
+use common::curves::{fixed, grid, solve};
+use common::snecma_beam;
 use std::cell::Cell;
-use stickslip_core::balance::{
-    sweep, ForcedBalance, HarmonicChoice, Point, PointStatus, Settings, Solution,
-};
-
-fn fixed(highest: usize) -> Settings {
-    Settings { harmonics: HarmonicChoice::Fixed(highest), ..Settings::default() }
-}
-
-fn grid(from: f64, to: f64, count: usize) -> Vec<f64> {
-    (0..count).map(|i| from + (to - from) * i as f64 / (count - 1) as f64).collect()
-}
-
-fn solve(system: &System, settings: Settings, omega: &[f64]) -> Solution {
-    let model = system.model();
-    let observe: Vec<usize> = (0..system.dofs()).collect();
-    let balance = ForcedBalance::new(&model, settings, &observe).unwrap();
-    sweep(balance, omega).unwrap()
-}
+use stickslip_core::balance::{ForcedBalance, Point, PointStatus};
 
 /// Median ratio of the estimated to the true sum of harmonic changes, and the share of points at
 /// which the estimate is less than a third of the truth.

@@ -4,50 +4,19 @@
 
 mod common;
 
+use common::curves::{amplitude_of, fixed, grid, solve};
 use common::{beam_pair, runge_kutta, single_dof, snecma_beam, System};
 use stickslip_core::balance::{
-    refine_peak, sweep, sweep_range, ForcedBalance, HarmonicChoice, Point, PointStatus, Settings,
-    Solution,
+    refine_peak, sweep, sweep_range, ForcedBalance, PointStatus, Settings, Solution,
 };
 use stickslip_core::contact::Residual;
-use stickslip_core::fourier::{amplitude, Harmonics, Measure, SampleTable};
-
-fn fixed(highest: usize) -> Settings {
-    Settings { harmonics: HarmonicChoice::Fixed(highest), ..Settings::default() }
-}
-
-fn grid(from: f64, to: f64, count: usize) -> Vec<f64> {
-    (0..count).map(|i| from + (to - from) * i as f64 / (count - 1) as f64).collect()
-}
-
-fn solve(system: &System, settings: Settings, omega: &[f64]) -> Solution {
-    let model = system.model();
-    let observe: Vec<usize> = (0..system.dofs()).collect();
-    let balance = ForcedBalance::new(&model, settings, &observe).unwrap();
-    sweep(balance, omega).unwrap()
-}
-
-fn half_range(point: &Point, half_wave: bool, dof: usize) -> f64 {
-    let harmonics = Harmonics::new(point.harmonics, half_wave);
-    let table = SampleTable::new(harmonics.clone());
-    let orders = point.harmonics + 1;
-    let mut series = vec![0.0; harmonics.slots()];
-    for k in harmonics.orders() {
-        let slot = harmonics.slot(k).unwrap();
-        let x = point.displacement[dof * orders + k];
-        series[slot] = x.re;
-        if k > 0 {
-            series[slot + 1] = -x.im;
-        }
-    }
-    amplitude(&table, &series, Measure::HalfRange)
-}
+use stickslip_core::fourier::Measure;
 
 fn largest(solution: &Solution, dof: usize) -> (f64, f64) {
     solution
         .points
         .iter()
-        .map(|p| (half_range(p, solution.half_wave, dof), p.omega))
+        .map(|p| (amplitude_of(p, solution.half_wave, dof, Measure::HalfRange), p.omega))
         .max_by(|a, b| a.0.total_cmp(&b.0))
         .unwrap()
 }
@@ -143,8 +112,11 @@ fn single_dof_with_its_subresonances() {
     }
     // Local maxima well below the resonance, fed by the higher harmonics of friction.
     let curve = solve(&single_dof(2.0), fixed(61), &grid(20.0, 90.0, 701));
-    let heights: Vec<f64> =
-        curve.points.iter().map(|p| half_range(p, curve.half_wave, 0)).collect();
+    let heights: Vec<f64> = curve
+        .points
+        .iter()
+        .map(|p| amplitude_of(p, curve.half_wave, 0, Measure::HalfRange))
+        .collect();
     let maxima: Vec<f64> = (1..heights.len() - 1)
         .filter(|&i| heights[i] > heights[i - 1] && heights[i] > heights[i + 1])
         .map(|i| curve.points[i].omega)
@@ -169,7 +141,7 @@ fn two_coupled_beams_against_runge_kutta() {
     for point in &curve.points {
         let reference = runge_kutta(&pair, point.omega, 150, 8000);
         for dof in [0, 1, 3, 4] {
-            let got = half_range(point, curve.half_wave, dof);
+            let got = amplitude_of(point, curve.half_wave, dof, Measure::HalfRange);
             let error = (got / reference[dof] - 1.0).abs();
             assert!(error < 2e-3, "{} rad/s, DOF {dof}: {got} {}", point.omega, reference[dof]);
         }
@@ -189,7 +161,7 @@ fn several_forces_on_any_harmonic_and_a_static_load_against_runge_kutta() {
         assert!(point.contacts.iter().all(|c| c.slip_fraction > 0.0), "{:?}", point.contacts);
         let reference = runge_kutta(&system, point.omega, 150, 8000);
         for dof in [0, 1, 3, 4] {
-            let got = half_range(point, false, dof);
+            let got = amplitude_of(point, false, dof, Measure::HalfRange);
             let error = (got / reference[dof] - 1.0).abs();
             assert!(error < 2e-3, "{} rad/s, DOF {dof}: {got} {}", point.omega, reference[dof]);
         }
@@ -212,7 +184,10 @@ fn every_case_converges_in_both_directions() {
                 let b = solve(&beam, fixed(highest), &down);
                 assert!(all_converged(&a) && all_converged(&b), "{case}");
                 for (p, q) in a.points.iter().zip(b.points.iter().rev()) {
-                    let (x, y) = (half_range(p, true, 1), half_range(q, true, 1));
+                    let (x, y) = (
+                        amplitude_of(p, true, 1, Measure::HalfRange),
+                        amplitude_of(q, true, 1, Measure::HalfRange),
+                    );
                     assert!((x / y - 1.0).abs() < 1e-6, "{case}, {} rad/s: {x} {y}", p.omega);
                 }
             }
@@ -243,8 +218,10 @@ fn a_range_gets_its_steps_and_harmonics_from_the_tolerance() {
                 // A straight line holds to a few times the tolerance in the middle of each step.
                 let middle = 0.5 * (pair[0].omega + pair[1].omega);
                 let between = solve(&beam, fixed(83), &[middle]);
-                let exact = half_range(&between.points[0], true, 1);
-                let line = 0.5 * (half_range(&pair[0], true, 1) + half_range(&pair[1], true, 1));
+                let exact = amplitude_of(&between.points[0], true, 1, Measure::HalfRange);
+                let line = 0.5
+                    * (amplitude_of(&pair[0], true, 1, Measure::HalfRange)
+                        + amplitude_of(&pair[1], true, 1, Measure::HalfRange));
                 assert!((line / exact - 1.0).abs() < 5.0 * tolerance, "{middle}: {line} {exact}");
             }
         }

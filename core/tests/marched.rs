@@ -6,53 +6,13 @@
 mod common;
 
 use common::coupled::{Coupled, SLIP_FORCE, STIFFNESS};
+use common::tangents::{load, series, table_of, tangent_error, ONCE, STATES};
 use faer::{mat, Mat};
 use stickslip_core::contact::{
     Aft, ContactLaw, HarmonicForce, Jenkins, Motion, PointSummary, Residual, ReturnMapJacobian,
     Slider, SlipElement as _, SlipLoad,
 };
 use stickslip_core::fourier::{Harmonics, SampleTable};
-
-/// One harmonic of a series: order, cosine and sine coefficient.
-type Term = (usize, f64, f64);
-
-fn series(table: &SampleTable, terms: &[Term]) -> Vec<f64> {
-    let mut u = vec![0.0; table.harmonics().slots()];
-    for &(order, a, b) in terms {
-        if let Some(slot) = table.harmonics().slot(order) {
-            u[slot] = a;
-            if order > 0 {
-                u[slot + 1] = b;
-            }
-        }
-    }
-    u
-}
-
-fn load(law: &dyn ContactLaw, table: &SampleTable, u: &[f64], residual: Residual) -> SlipLoad {
-    let mut load = SlipLoad::default();
-    law.slip_load(Motion { table, displacement: u, residual }, true, &mut load);
-    load
-}
-
-/// Largest difference between tangent and central differences, relative to the stiffness.
-fn tangent_error(law: &dyn ContactLaw, table: &SampleTable, u: &[f64], residual: Residual) -> f64 {
-    let exact = load(law, table, u, residual);
-    let (size, step) = (u.len(), 1e-6);
-    let mut worst = 0.0_f64;
-    for column in 0..size {
-        let mut shifted = u.to_vec();
-        shifted[column] += step;
-        let ahead = load(law, table, &shifted, residual).value;
-        shifted[column] -= 2.0 * step;
-        let behind = load(law, table, &shifted, residual).value;
-        for row in 0..size {
-            let difference = (ahead[row] - behind[row]) / (2.0 * step);
-            worst = worst.max((exact.tangent[row * size + column] - difference).abs());
-        }
-    }
-    worst / STIFFNESS
-}
 
 fn jenkins() -> Box<dyn ContactLaw> {
     Box::new(Jenkins::new(STIFFNESS, SLIP_FORCE).unwrap())
@@ -80,28 +40,10 @@ fn parameter_slopes_approach_those_of_the_closed_form() {
 
 #[test]
 fn tangents_in_every_contact_state() {
-    let odd = SampleTable::new(Harmonics::new(7, true));
-    let all = SampleTable::new(Harmonics::new(6, false));
-    let once = [(1, 0.9, 0.2), (3, 0.05, -0.04)];
-    let often = [(1, 0.8, 0.1), (3, 0.9, 0.5), (5, -0.3, 0.6), (7, 0.2, 0.1)];
-    let uneven = [(0, 0.7, 0.0), (1, 1.1, 0.2), (2, 0.8, -0.5), (4, 0.1, 0.3)];
-    let stuck = [(0, 0.2, 0.0), (1, 0.3, 0.05), (2, 0.06, 0.04)];
-    let past = [(0, 0.9, 0.0), (1, 0.3, 0.05), (2, 0.06, 0.04)];
-    let cases: [(&str, &SampleTable, &[Term], Residual); 10] = [
-        ("slip twice", &odd, &once, Residual::Centred),
-        ("slip in several windows", &odd, &often, Residual::Centred),
-        ("gross slip", &odd, &[(1, 300.0, 40.0), (3, 2.0, 1.0)], Residual::Centred),
-        ("slip without symmetry", &all, &uneven, Residual::Centred),
-        ("slip twice, all harmonics", &all, &once, Residual::FromRest),
-        ("stuck, odd", &odd, &[(1, 0.3, 0.1)], Residual::Centred),
-        ("stuck, centred", &all, &stuck, Residual::Centred),
-        ("stuck, from rest", &all, &stuck, Residual::FromRest),
-        ("stuck, from rest, past its limit", &all, &past, Residual::FromRest),
-        ("stuck, given residual past its limit", &all, &stuck, Residual::Value(-0.8)),
-    ];
     for samples in [64, 258] {
         let law = marched(samples);
-        for (name, table, terms, residual) in cases {
+        for (name, harmonics, terms, residual) in STATES {
+            let table = &table_of(harmonics);
             let u = series(table, terms);
             let error = tangent_error(&law, table, &u, residual);
             assert!(error < 1e-6, "{name}, {samples} samples: {error:.2e}");
@@ -109,7 +51,8 @@ fn tangents_in_every_contact_state() {
             assert_eq!(states[0].active, states[1].active, "{name}");
         }
         let frictionless = Aft::new(Box::new(Jenkins::new(STIFFNESS, 0.0).unwrap()), samples);
-        let u = series(&odd, &once);
+        let odd = table_of((7, true));
+        let u = series(&odd, ONCE);
         assert!(tangent_error(&frictionless.unwrap(), &odd, &u, Residual::Centred) < 1e-9);
     }
 }

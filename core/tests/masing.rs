@@ -5,7 +5,8 @@
 mod common;
 
 use common::damper::Random;
-use common::masing::{close, largest, laws, load, series, RESIDUALS};
+use common::masing::{close, largest, laws, series, RESIDUALS};
+use common::tangents::load;
 use stickslip_core::contact::{
     Aft, Backbone, ContactLaw, HarmonicForce as _, Jenkins, Masing, Motion, PointSummary, Residual,
     Slider, SlipLoad,

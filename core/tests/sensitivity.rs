@@ -4,13 +4,14 @@
 
 mod common;
 
+use common::curves::amplitude_of;
 use common::{beam_pair, single_dof, snecma_beam, System};
 use proptest::prelude::*;
 use stickslip_core::balance::{
     Cause, ForcedBalance, HarmonicChoice, Linearised, Point, PointStatus, Settings,
 };
 use stickslip_core::contact::{ContactLaw, HarmonicForce, Jenkins, Motion, Residual};
-use stickslip_core::fourier::{amplitude, Harmonics, Measure, SampleTable};
+use stickslip_core::fourier::{Harmonics, Measure, SampleTable};
 use stickslip_core::solve::NewtonSettings;
 use stickslip_core::Model;
 
@@ -31,20 +32,6 @@ fn solve(model: &Model, settings: Settings, omega: f64, dof: usize) -> Point {
     let point = balance.solve(omega, None).unwrap();
     assert_eq!(point.status, PointStatus::Converged);
     point
-}
-
-fn measured(point: &Point, half_wave: bool, measure: Measure) -> f64 {
-    let table = SampleTable::new(Harmonics::new(point.harmonics, half_wave));
-    let harmonics = table.harmonics();
-    let mut series = vec![0.0; harmonics.slots()];
-    for order in harmonics.orders() {
-        let slot = harmonics.slot(order).unwrap();
-        series[slot] = point.displacement[order].re;
-        if order > 0 {
-            series[slot + 1] = -point.displacement[order].im;
-        }
-    }
-    amplitude(&table, &series, measure)
 }
 
 /// The system with one quantity multiplied by `factor`.
@@ -92,12 +79,12 @@ fn compare_at(
     for measure in MEASURES {
         for (cause, value) in causes(system) {
             let (size, slopes) = linearised.amplitude(dof, measure, &[cause]).unwrap();
-            assert!((size - measured(&point, half_wave, measure)).abs() <= 1e-12 * size);
+            assert!((size - amplitude_of(&point, half_wave, 0, measure)).abs() <= 1e-12 * size);
             let at = |step: f64| {
                 let factor = 1.0 + step;
                 let frequency = if cause == Cause::Frequency { omega * factor } else { omega };
                 let model = changed(system, cause, factor).model();
-                measured(&solve(&model, settings, frequency, dof), half_wave, measure)
+                amplitude_of(&solve(&model, settings, frequency, dof), half_wave, 0, measure)
             };
             let scale = if cause == Cause::Frequency { omega } else { value };
             let exact = slopes[0] * scale;

@@ -1,55 +1,12 @@
 //! Tangents against central differences in every contact state.
 
+mod common;
+
+use common::coupled::{SLIP_FORCE, STIFFNESS};
+use common::tangents::{series, table_of, tangent_error, OFTEN, ONCE, STATES};
 use proptest::prelude::*;
-use stickslip_core::contact::{
-    ContactLaw, HarmonicForce, Jenkins, Motion, PointSummary, Residual, SlipLoad,
-};
+use stickslip_core::contact::{ContactLaw, HarmonicForce, Jenkins, Motion, PointSummary, Residual};
 use stickslip_core::fourier::{Harmonics, SampleTable};
-
-const STIFFNESS: f64 = 2.0;
-const SLIP_FORCE: f64 = 1.0;
-
-/// Largest difference between tangent and central differences, relative to the stiffness.
-fn tangent_error(law: &dyn ContactLaw, table: &SampleTable, u: &[f64], residual: Residual) -> f64 {
-    let evaluate = |u: &[f64], tangent: bool| {
-        let mut load = SlipLoad::default();
-        law.slip_load(Motion { table, displacement: u, residual }, tangent, &mut load);
-        load
-    };
-    let exact = evaluate(u, true);
-    let size = u.len();
-    let step = 1e-6;
-    let mut worst = 0.0_f64;
-    for column in 0..size {
-        let mut shifted = u.to_vec();
-        shifted[column] += step;
-        let ahead = evaluate(&shifted, false);
-        shifted[column] -= 2.0 * step;
-        let behind = evaluate(&shifted, false);
-        for row in 0..size {
-            let difference = (ahead.value[row] - behind.value[row]) / (2.0 * step);
-            worst = worst.max((exact.tangent[row * size + column] - difference).abs());
-        }
-    }
-    worst / STIFFNESS
-}
-
-/// One harmonic of a series: order, cosine and sine coefficient.
-type Term = (usize, f64, f64);
-
-fn series(table: &SampleTable, terms: &[Term]) -> Vec<f64> {
-    let harmonics = table.harmonics();
-    let mut u = vec![0.0; harmonics.slots()];
-    for &(order, a, b) in terms {
-        if let Some(slot) = harmonics.slot(order) {
-            u[slot] = a;
-            if order > 0 {
-                u[slot + 1] = b;
-            }
-        }
-    }
-    u
-}
 
 /// Slip phases per period, counted on a fine force history.
 fn slip_phases(law: &dyn ContactLaw, table: &SampleTable, u: &[f64]) -> usize {
@@ -64,35 +21,14 @@ fn slip_phases(law: &dyn ContactLaw, table: &SampleTable, u: &[f64]) -> usize {
 #[test]
 fn every_state_of_a_jenkins_element() {
     let law = Jenkins::new(STIFFNESS, SLIP_FORCE).unwrap();
-    let odd = SampleTable::new(Harmonics::new(7, true));
-    let all = SampleTable::new(Harmonics::new(6, false));
-    let once = [(1, 0.9, 0.2), (3, 0.05, -0.04)];
-    let often = [(1, 0.8, 0.1), (3, 0.9, 0.5), (5, -0.3, 0.6), (7, 0.2, 0.1)];
-    let uneven = [(0, 0.7, 0.0), (1, 1.1, 0.2), (2, 0.8, -0.5), (4, 0.1, 0.3)];
-    let stuck = [(0, 0.2, 0.0), (1, 0.3, 0.05), (2, 0.06, 0.04)];
-    let cases: [(&str, &SampleTable, &[Term], Residual); 10] = [
-        ("slip twice", &odd, &once, Residual::Centred),
-        ("slip in several windows", &odd, &often, Residual::Centred),
-        ("gross slip", &odd, &[(1, 300.0, 40.0), (3, 2.0, 1.0)], Residual::Centred),
-        ("slip without symmetry", &all, &uneven, Residual::Centred),
-        ("slip twice, all harmonics", &all, &once, Residual::FromRest),
-        ("stuck, odd", &odd, &[(1, 0.3, 0.1)], Residual::Centred),
-        ("stuck, centred", &all, &stuck, Residual::Centred),
-        ("stuck, from rest", &all, &stuck, Residual::FromRest),
-        (
-            "stuck, from rest, past its limit",
-            &all,
-            &[(0, 0.9, 0.0), (1, 0.3, 0.05), (2, 0.06, 0.04)],
-            Residual::FromRest,
-        ),
-        ("stuck, given residual past its limit", &all, &stuck, Residual::Value(-0.8)),
-    ];
-    for (name, table, terms, residual) in cases {
-        let error = tangent_error(&law, table, &series(table, terms), residual);
+    for (name, harmonics, terms, residual) in STATES {
+        let table = table_of(harmonics);
+        let error = tangent_error(&law, &table, &series(&table, terms), residual);
         assert!(error < 1e-6, "{name}: {error:.2e}");
     }
-    assert_eq!(slip_phases(&law, &odd, &series(&odd, &once)), 2);
-    assert!(slip_phases(&law, &odd, &series(&odd, &often)) >= 4);
+    let odd = table_of((7, true));
+    assert_eq!(slip_phases(&law, &odd, &series(&odd, ONCE)), 2);
+    assert!(slip_phases(&law, &odd, &series(&odd, OFTEN)) >= 4);
 }
 
 #[test]

@@ -7,21 +7,14 @@ import numpy as np
 import pytest
 
 import stickslip as ss
+from rubbing import beam_response, one_dof
 from stickslip.reference import snecma_beam
 from stickslip.results.arrays import Arrays
-
-GRID = np.linspace(150.0, 250.0, 60)
 
 
 @pytest.fixture(scope="module")
 def frf():
-    return ss.forced_response(snecma_beam(), GRID, harmonics=9)
-
-
-def one_dof(*forces, damping=0.4, stiffness=8.0, slip_force=1.0):
-    structure = ss.Structure([[2.0]], [[stiffness]], damping=[[damping]], dofs=["x"])
-    contact = ss.Jenkins("x", stiffness=10.0, slip_force=slip_force)
-    return ss.Model(structure, [contact], forces or [ss.Force("x", 0.5)])
+    return beam_response()
 
 
 class StopAt:

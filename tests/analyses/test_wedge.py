@@ -6,16 +6,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-
-ENDS = {"left_dofs": ["x", "y"], "right_dofs": ["x", "y"]}
-WEDGE = ss.WedgeDamper(
-    angle=40.0,
-    mass=0.1,
-    friction=0.6,
-    tangential_stiffness=3e5,
-    normal_stiffness=3e5,
-    load=240.0,
-)
+from wedges import ENDS, WEDGE
 
 
 def pair(*, damping=100.0, force=150.0, phase=np.pi, load=240.0, **changes):

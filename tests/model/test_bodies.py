@@ -9,16 +9,8 @@ from hypothesis import strategies as st
 from matplotlib.figure import Figure
 
 import stickslip as ss
+from wedges import ENDS, WEDGE
 
-ENDS = {"left_dofs": ["x", "y"], "right_dofs": ["x", "y"]}
-WEDGE = ss.WedgeDamper(
-    angle=40.0,
-    mass=0.1,
-    friction=0.6,
-    tangential_stiffness=3e5,
-    normal_stiffness=3e5,
-    load=240.0,
-)
 SIDES = {"friction": 0.3, "tangential_stiffness": 2e5, "normal_stiffness": 3e5, "load": 50.0}
 TURNING = [(-0.012, 0.002), (-0.008, 0.006)]
 

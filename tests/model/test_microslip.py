@@ -6,15 +6,13 @@ import numpy as np
 import pytest
 
 import stickslip as ss
+from small_study import TWO_MASSES
 from stickslip.model.laws import contact_from_spec
 from stickslip.study import Study
 
-STUDY = """
-[structure]
-mass = [[1.0, 0.0], [0.0, 1.0]]
-stiffness = [[2.0, -1.0], [-1.0, 2.0]]
-damping = { modal = "1 %" }
-dofs = ["tip", "root"]
+STUDY = (
+    TWO_MASSES
+    + """
 [[contact]]
 law = "iwan"
 dof = "tip"
@@ -45,6 +43,7 @@ amplitude = "1 N"
 [analysis]
 omega = [1.0, 1.1]
 """
+)
 CONTACTS = [
     ss.Iwan("a", "b", stiffness=2e6, slip_force=1e3, chi=-0.5, beta=0.0),
     ss.Iwan("a", stiffness=1.0, slip_force=np.inf, chi=0.0, beta=2.0, name="bolt"),

@@ -6,15 +6,13 @@ import numpy as np
 import pytest
 
 import stickslip as ss
+from small_study import TWO_MASSES
 from stickslip.model.laws import contact_from_spec
 from stickslip.study import Study
 
-STUDY = """
-[structure]
-mass = [[1.0, 0.0], [0.0, 1.0]]
-stiffness = [[2.0, -1.0], [-1.0, 2.0]]
-damping = { modal = "1 %" }
-dofs = ["tip", "root"]
+STUDY = (
+    TWO_MASSES
+    + """
 [[contact]]
 law = "stop"
 dof = "tip"
@@ -30,6 +28,7 @@ amplitude = "1 N"
 [analysis]
 omega = [1.0, 1.1]
 """
+)
 
 
 def test_study_tables_read_units():

@@ -7,27 +7,13 @@ import pytest
 from typer.testing import CliRunner
 
 import stickslip as ss
+from small_study import PAD
 from stickslip.cli import app
 from stickslip.study import Study
 
-STUDY = """
-[structure]
-mass = [[1.0]]
-stiffness = [[1e4]]
-damping = {modal = 0.005}
-dofs = ["tip"]
-
-[[contact]]
-law = "jenkins"
-name = "pad"
-dof = "tip"
-stiffness = 2000
-slip_force = 2
-
-[[force]]
-dof = "tip"
-amplitude = "1 N"
-
+STUDY = (
+    PAD
+    + """
 [analysis]
 kind = "fit"
 parameters = {"pad.stiffness" = [1e2, 1e5], slip_force = [0.1, 10], "damping.ratio" = [1e-3, 1e-1]}
@@ -50,6 +36,7 @@ relative_noise = "1 %"
 frequency_unit = "Hz"
 length_unit = "mm"
 """
+)
 
 
 @pytest.fixture

@@ -10,27 +10,13 @@ from scipy import stats
 from typer.testing import CliRunner
 
 import stickslip as ss
+from small_study import PAD
 from stickslip.cli import app
 from stickslip.study import Study
 
-STUDY = """
-[structure]
-mass = [[1.0]]
-stiffness = [[1e4]]
-damping = {modal = 0.005}
-dofs = ["tip"]
-
-[[contact]]
-law = "jenkins"
-name = "pad"
-dof = "tip"
-stiffness = 2000
-slip_force = 2
-
-[[force]]
-dof = "tip"
-amplitude = "1 N"
-
+STUDY = (
+    PAD
+    + """
 [analysis]
 kind = "uncertainty"
 samples = 20
@@ -42,6 +28,7 @@ harmonics = 1
 
 [analysis.quantity]
 """
+)
 PEAK = 'kind = "highest-peak"\ndof = "tip"\nomega = {from = "10 Hz", to = "25 Hz"}'
 KINDS = {
     "peak": PEAK,

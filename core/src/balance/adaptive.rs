@@ -4,14 +4,12 @@ use super::branch_sweep::sweep_branch;
 use super::condensed::Condensed;
 use super::forced::ForcedBalance;
 use super::keep;
-use super::scale::OF_STEPS;
 use super::solution::{Point, PointStatus, Solution};
 use super::stops::{stops, LONGEST};
 use super::sweep::{check_frequency, finish};
 use super::unknowns::Unknowns;
 use crate::solve::System as _;
 use crate::Error;
-use faer::c64;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -128,24 +126,6 @@ fn line_error(balance: &ForcedBalance<'_>, points: &[Arc<Point>], new: &Point) -
     if ![before, last, new].into_iter().all(Point::is_solved) {
         return None;
     }
-    let (step, earlier) = (new.omega - last.omega, last.omega - before.omega);
-    let bend = 0.25 * step / (step + earlier);
-    let own = |point: &Point, dof: usize, order: usize| {
-        let orders = point.harmonics + 1;
-        if order < orders {
-            point.displacement[dof * orders + order]
-        } else {
-            c64::new(0.0, 0.0)
-        }
-    };
-    let errors = (0..new.error_estimate.len()).map(|dof| {
-        let missed: f64 = (1..=new.harmonics)
-            .map(|k| {
-                let (x, y, z) = (own(before, dof, k), own(last, dof, k), own(new, dof, k));
-                (z - y - (y - x) * (step / earlier)).norm_sqr()
-            })
-            .sum();
-        bend * missed.sqrt()
-    });
-    Some(balance.scale.relative(new, OF_STEPS, errors))
+    let steps = [last.omega - before.omega, new.omega - last.omega];
+    Some(balance.scale.of_line([before, last, new], steps))
 }

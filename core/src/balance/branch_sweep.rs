@@ -8,7 +8,6 @@ use super::forced::ForcedBalance;
 use super::forced_curve::ForcedCurve;
 use super::keep;
 use super::resolution_control::Decision;
-use super::scale::OF_STEPS;
 use super::settings::Resolution;
 use super::solution::{CurveEnd, Point, PointStatus, Solution};
 use super::stops::{stops, LONGEST};
@@ -16,7 +15,6 @@ use super::sweep::finish;
 use super::tangent::distance;
 use crate::solve::{across, between, Advance, Branch, Continuation, Curve as _, Steps};
 use crate::Error;
-use faer::c64;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -370,26 +368,8 @@ impl Walk<'_, '_> {
             to.push(last.omega);
             distance(&from, &to)
         };
-        let ratio = step / earlier.max(f64::MIN_POSITIVE);
-        let bend = 0.25 * step / (step + earlier);
-        let own = |point: &Point, dof: usize, order: usize| {
-            let orders = point.harmonics + 1;
-            if order < orders {
-                point.displacement[dof * orders + order]
-            } else {
-                c64::new(0.0, 0.0)
-            }
-        };
-        let errors = (0..new.error_estimate.len()).map(|dof| {
-            let missed: f64 = (1..=new.harmonics)
-                .map(|k| {
-                    let (x, y, z) = (own(before, dof, k), own(last, dof, k), own(new, dof, k));
-                    (z - y - (y - x) * ratio).norm_sqr()
-                })
-                .sum();
-            bend * missed.sqrt()
-        });
-        Some(self.balance.scale.relative(new, OF_STEPS, errors))
+        let steps = [earlier.max(f64::MIN_POSITIVE), step];
+        Some(self.balance.scale.of_line([before, last, new], steps))
     }
 }
 

@@ -117,10 +117,6 @@ impl Curve for ForcedCurve<'_> {
         self.unknowns
     }
 
-    fn parameter(&self, z: &[f64]) -> usize {
-        z.len() - 1
-    }
-
     fn residual(&mut self, z: &[f64], out: &mut [f64]) {
         let size = self.size;
         let Some(at) = self.evaluate(z) else { return out.fill(f64::NAN) };

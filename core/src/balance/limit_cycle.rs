@@ -151,10 +151,6 @@ impl Curve for CycleBalance<'_> {
         self.reference.len()
     }
 
-    fn parameter(&self, z: &[f64]) -> usize {
-        z.len() - 1
-    }
-
     fn scalars(&self, z: &[f64]) -> usize {
         z.len() - 2
     }

@@ -1,13 +1,14 @@
 //! What an error of a DOF counts against.
 
 use super::solution::Point;
+use faer::c64;
 
 /// A DOF's truncation error counts relative to its amplitude, but not to less than this share of the
 /// largest amplitude it has had; …
 pub(super) const OF_HARMONICS: f64 = 1e-3;
 /// … that of a straight line between two points not to less than this: an antiresonance needs no
 /// points of its own; …
-pub(super) const OF_STEPS: f64 = 0.02;
+const OF_STEPS: f64 = 0.02;
 /// … and neither to less than this share of the largest amplitude of any DOF, below which a motion that
 /// symmetry forbids is rounding.
 const NOISE: f64 = 1e-6;
@@ -65,6 +66,29 @@ impl Scale {
             worst = if relative.is_nan() { f64::INFINITY } else { worst.max(relative) };
         }
         worst
+    }
+
+    /// Largest of the relative errors of a straight line between the last two of three points along a
+    /// curve, from the curvature through all of them; `steps` are their distances.
+    pub(super) fn of_line(&self, points: [&Point; 3], [earlier, step]: [f64; 2]) -> f64 {
+        let new = points[2];
+        let own = |point: &Point, dof: usize, order: usize| {
+            let orders = point.harmonics + 1;
+            if order < orders {
+                point.displacement[dof * orders + order]
+            } else {
+                c64::new(0.0, 0.0)
+            }
+        };
+        let (bend, ratio) = (0.25 * step / (step + earlier), step / earlier);
+        let errors = (0..new.error_estimate.len()).map(|dof| {
+            let missed = (1..=new.harmonics).map(|order| {
+                let [x, y, z] = points.map(|point| own(point, dof, order));
+                (z - y - (y - x) * ratio).norm_sqr()
+            });
+            bend * missed.sum::<f64>().sqrt()
+        });
+        self.relative(new, OF_STEPS, errors)
     }
 }
 

@@ -9,7 +9,7 @@
 use super::backbone::Backbone;
 use super::law::{HarmonicForce, ReturnMapJacobian};
 use super::loading_curve::LoadingCurve;
-use super::masing_integrals::{add_loops, sweep};
+use super::masing_integrals::{add_loops, every, sweep};
 use super::masing_loops::{Branch, Loops, Stretch};
 use super::parameter::{number, numbers};
 use super::stick_slip::Path;
@@ -286,18 +286,10 @@ impl HarmonicForce for Masing {
         }
         let (loops, span) =
             (Loops::new(&self.curve, motion, &path), motion.table.harmonics().span());
-        sweep(
-            &self.curve,
-            motion,
-            &loops,
-            |_| true,
-            largest,
-            |nodes| {
-                let slipping: f64 =
-                    (0..NODES).map(|i| nodes.panel.weight[i] * nodes.slope[i]).sum();
-                out[0].slip_fraction += slipping / self.curve.stiffness / span;
-            },
-        );
+        sweep(&self.curve, motion, &loops, every, largest, |nodes| {
+            let slipping: f64 = (0..NODES).map(|i| nodes.panel.weight[i] * nodes.slope[i]).sum();
+            out[0].slip_fraction += slipping / self.curve.stiffness / span;
+        });
         let closed: f64 = loops.closed.iter().map(|half_range| self.curve.work(*half_range)).sum();
         let half = motion.table.harmonics().half_wave();
         // The two halves of a symmetric motion close the largest loop together.
@@ -358,21 +350,14 @@ impl HarmonicForce for Masing {
         let loads = loops.at_reversals(half_range, of);
         let weight = 2.0 / harmonics.span();
         let largest = self.curve.loss(half_range).slope;
-        sweep(
-            &self.curve,
-            motion,
-            &loops,
-            |_| true,
-            largest,
-            |nodes| {
-                let mut lanes = [0.0; NODES];
-                for (i, lane) in lanes.iter_mut().enumerate() {
-                    let own = 2.0 * nodes.branch.sign * of(nodes.distance[i]);
-                    *lane = weight * nodes.panel.weight[i] * (loads[nodes.stretch.branch] + own);
-                }
-                nodes.panel.add_integrals(harmonics, &lanes, out);
-            },
-        );
+        sweep(&self.curve, motion, &loops, every, largest, |nodes| {
+            let mut lanes = [0.0; NODES];
+            for (i, lane) in lanes.iter_mut().enumerate() {
+                let own = 2.0 * nodes.branch.sign * of(nodes.distance[i]);
+                *lane = weight * nodes.panel.weight[i] * (loads[nodes.stretch.branch] + own);
+            }
+            nodes.panel.add_integrals(harmonics, &lanes, out);
+        });
         harmonics.halve_means(out);
         if !harmonics.has_mean() {
             return;

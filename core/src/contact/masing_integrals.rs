@@ -36,6 +36,11 @@ pub(super) struct Nodes<'a> {
     pub(super) slope: Lanes,
 }
 
+/// Wants all of them.
+pub(super) fn every(_: &Stretch) -> bool {
+    true
+}
+
 /// Calls `visit` with panels that cover the wanted stretches of the loops.
 pub(super) fn sweep(
     curve: &LoadingCurve,

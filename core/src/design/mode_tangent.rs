@@ -71,10 +71,6 @@ impl Curve for ModeEquations<'_> {
         self.size()
     }
 
-    fn parameter(&self, z: &[f64]) -> usize {
-        z.len() - 1
-    }
-
     /// The parameter is a logarithm, which vanishes somewhere: all unknowns are compared as a whole.
     fn scalars(&self, z: &[f64]) -> usize {
         z.len()

@@ -211,10 +211,6 @@ impl Curve for OrbitCurve<'_> {
         self.reference.len()
     }
 
-    fn parameter(&self, z: &[f64]) -> usize {
-        z.len() - 1
-    }
-
     fn scalars(&self, z: &[f64]) -> usize {
         z.len() - 2
     }

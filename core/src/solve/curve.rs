@@ -8,8 +8,10 @@ pub trait Curve {
     /// Number of unknowns, one more than equations.
     fn unknowns(&self) -> usize;
 
-    /// Position of the parameter among the unknowns of `z`.
-    fn parameter(&self, z: &[f64]) -> usize;
+    /// Position of the parameter among the unknowns of `z`: the last one, if nothing else is said.
+    fn parameter(&self, z: &[f64]) -> usize {
+        z.len() - 1
+    }
 
     /// Position from which on the unknowns of `z` are compared one by one, the parameter among them;
     /// those before are one motion, compared as a whole and wherever it begins in time.

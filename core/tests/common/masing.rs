@@ -1,7 +1,7 @@
 //! Laws without sliders, motions and their loads.
 
 use super::damper::Random;
-use stickslip_core::contact::{Backbone, ContactLaw, Masing, Motion, Residual, SlipLoad};
+use stickslip_core::contact::{Backbone, Masing, Residual};
 use stickslip_core::fourier::SampleTable;
 
 pub const RESIDUALS: [Residual; 3] = [Residual::Centred, Residual::FromRest, Residual::Value(0.07)];
@@ -23,12 +23,6 @@ pub fn laws() -> Vec<Masing> {
 pub fn series(random: &mut Random, table: &SampleTable, size: f64) -> Vec<f64> {
     let slots = table.harmonics().slots();
     (0..slots).map(|slot| size * random.next() / (1.0 + 0.3 * slot as f64)).collect()
-}
-
-pub fn load(law: &dyn ContactLaw, table: &SampleTable, u: &[f64], residual: Residual) -> SlipLoad {
-    let mut load = SlipLoad::default();
-    law.slip_load(Motion { table, displacement: u, residual }, true, &mut load);
-    load
 }
 
 pub fn largest(values: &[f64]) -> f64 {

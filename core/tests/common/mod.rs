@@ -2,12 +2,14 @@
 #![allow(dead_code, clippy::unwrap_used)]
 
 pub mod coupled;
+pub mod curves;
 pub mod damper;
 pub mod differences;
 pub mod masing;
 pub mod node;
 pub mod passive;
 pub mod planar;
+pub mod tangents;
 
 use faer::{c64, mat, Mat};
 use stickslip_core::contact::Jenkins;
