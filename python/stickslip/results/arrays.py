@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip import _core
+from stickslip.checks import whole_number
 from stickslip.results.dataset import Stored
 from stickslip.results.fields import Bool, Code, Columns, Complex, Computed, Float, Int, column
 from stickslip.results.status import Status
@@ -225,6 +226,15 @@ class Arrays(PeriodicArrays):
     def solved(self) -> Bool:
         """(n,) Whether the balance equations hold at the point."""
         return _solved(self.status)
+
+
+def period_of(series: Complex, samples: int) -> Float:
+    """Return one period of a series from its harmonics 0 to H, shape (samples, ...)."""
+    count = whole_number(samples, "samples", smallest=1)
+    # Whole turns are dropped before the angle is formed: high harmonics keep all digits.
+    turns = np.outer(np.arange(count), np.arange(len(series))) % count
+    turn = np.exp(2j * np.pi / count * turns)
+    return constant(np.ascontiguousarray((turn @ series).real))
 
 
 def amplitude_of(coefficients: Complex, measure: Measure) -> Float:

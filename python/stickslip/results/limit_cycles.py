@@ -9,7 +9,7 @@ from typing import Any, ClassVar, NamedTuple, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.checks import choice, whole_number
+from stickslip.checks import choice
 from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
 from stickslip.model import Model
@@ -25,6 +25,7 @@ from stickslip.results.arrays import (
     amplitude_in,
     amplitude_of,
     constant,
+    period_of,
 )
 from stickslip.results.fields import Columns, Numbers, Shown, column
 from stickslip.results.periodic import PeriodicMotions
@@ -185,10 +186,7 @@ class LimitCycles(PeriodicMotions, FloquetStability):
 
     def waveform(self, dof: str, index: int, samples: int = 256) -> Float:
         """Return one period of a displacement from its harmonics, shape (samples,) [m]."""
-        series = self.coefficients(dof)[self.position(index)]
-        count = whole_number(samples, "samples", smallest=1)
-        turn = 2j * np.pi * np.outer(np.arange(count) / count, np.arange(series.size))
-        return constant((np.exp(turn) @ series).real)
+        return period_of(self.coefficients(dof)[self.position(index)], samples)
 
     def state(self, index: int) -> State:
         """Return the state at t = 0, from which `stickslip.transient` continues an exact orbit.

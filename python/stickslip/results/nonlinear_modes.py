@@ -9,13 +9,13 @@ from typing import Any, ClassVar, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
-from stickslip.checks import MatrixLike, choice, whole_number
+from stickslip.checks import MatrixLike, choice
 from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
 from stickslip.model.damping import DampingLaw
 from stickslip.model.destabilised import negative_matrix
 from stickslip.model.force import Force
-from stickslip.results.arrays import Float, Int, Measure, amplitude_of, constant
+from stickslip.results.arrays import Float, Int, Measure, amplitude_of, constant, period_of
 from stickslip.results.fields import Shown
 from stickslip.results.mode_arrays import ModeArrays
 from stickslip.results.periodic import PeriodicMotions
@@ -95,10 +95,7 @@ class NonlinearModes(PeriodicMotions):
 
     def waveform(self, dof: str, index: int, samples: int = 256) -> Float:
         """Return one period of a displacement from its harmonics, shape (samples,) [m]."""
-        series = self.coefficients(dof)[self.position(index)]
-        count = whole_number(samples, "samples", smallest=1)
-        turn = 2j * np.pi * np.outer(np.arange(count) / count, np.arange(series.size))
-        return constant((np.exp(turn) @ series).real)
+        return period_of(self.coefficients(dof)[self.position(index)], samples)
 
     def forced_response(
         self, forces: Force | Sequence[Force], omega: ArrayLike

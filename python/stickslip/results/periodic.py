@@ -23,6 +23,7 @@ from stickslip.results.arrays import (
     PeriodicArrays,
     amplitude_of,
     constant,
+    period_of,
 )
 from stickslip.results.fields import Shown
 from stickslip.results.result import Attributes, ColumnResult
@@ -200,14 +201,11 @@ class Sweep(PeriodicMotions):
 
     def _period(self, series: Complex, index: int, samples: int) -> Float:
         position = self.position(index)
-        count = whole_number(samples, "samples", smallest=1)
         if not self.arrays.solved[position]:
+            count = whole_number(samples, "samples", smallest=1)
             return constant(np.full((count, *series.shape[2:]), np.nan))
-        # Whole turns are dropped before the angle is formed: high harmonics keep all digits.
         kept = int(self.arrays.harmonics[position]) + 1
-        turns = np.outer(np.arange(count), np.arange(kept)) % count
-        turn = np.exp(2j * np.pi / count * turns)
-        return constant(np.ascontiguousarray((turn @ series[position, :kept]).real))
+        return period_of(series[position, :kept], samples)
 
 
 def key_of(dof: str, measure: Measure) -> tuple[str, Measure]:
