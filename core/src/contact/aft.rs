@@ -6,7 +6,8 @@
 //! of second order in the distance of the samples. It serves laws that have no closed form, and
 //! comparisons with those that have one.
 
-use super::law::{HarmonicForce, ReturnMapJacobian};
+use super::law::HarmonicForce;
+use super::return_map::ReturnMapJacobian;
 use super::samples::Samples;
 use super::{
     AssumedStart, ContactLaw, Describing, Element, Held, Motion, Parameter, Phase, PointSummary,

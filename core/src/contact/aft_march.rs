@@ -1,10 +1,10 @@
 //! The march of the sampled evaluation: from instant to instant until the state repeats, and its
 //! derivative.
 
-use super::law::ReturnMapJacobian;
 use super::march_rate::{follows, is_elastic, FrictionWork, Rate};
 use super::periodic_march::SLOW;
 use super::restart::Restart;
+use super::return_map::ReturnMapJacobian;
 use super::samples::Samples;
 use super::{Aft, AssumedStart, ContactLaw, Element, Motion, Residual, Unslipped};
 use faer::Mat;

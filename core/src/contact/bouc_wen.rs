@@ -5,8 +5,8 @@
 //! large one is not closed but drifts, since the law forgets where it reversed. It has no closed form:
 //! samples give its harmonics.
 
-use super::law::ReturnMapJacobian;
 use super::parameter::number;
+use super::return_map::ReturnMapJacobian;
 use super::{ContactLaw, Parameter, Parameters};
 use crate::Error;
 use faer::Mat;

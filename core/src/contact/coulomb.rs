@@ -13,8 +13,9 @@
 //! structure feels N − N₀. Behind a gap it feels all of N.
 
 use super::dual::{Dual, Real};
-use super::law::{HarmonicForce, ReturnMapJacobian};
+use super::law::HarmonicForce;
 use super::parameter::number;
+use super::return_map::ReturnMapJacobian;
 use super::slip_element::Element;
 use super::{AssumedStart, ContactLaw, Held, Motion, Parameter, Parameters, Unslipped};
 use crate::Error;

@@ -3,8 +3,9 @@
 //! Of a series of H harmonics the force has 3 H, and the products with the basis that its coefficients
 //! and their tangent are integrals of have 4 H: more than 4 H equidistant samples integrate them exactly.
 
-use super::law::{HarmonicForce, ReturnMapJacobian};
+use super::law::HarmonicForce;
 use super::parameter::number;
+use super::return_map::ReturnMapJacobian;
 use super::{
     ContactLaw, Describing, Motion, Parameter, Parameters, Phase, PointState, PointSummary,
     SlipLoad,

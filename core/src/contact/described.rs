@@ -1,7 +1,8 @@
 //! A law evaluated by its describing function.
 
 use super::aft::of_the_law;
-use super::law::{HarmonicForce, ReturnMapJacobian};
+use super::law::HarmonicForce;
+use super::return_map::ReturnMapJacobian;
 use super::{ContactLaw, Describing, Motion, Phase, PointSummary, SlipLoad};
 use faer::{c64, Mat};
 use std::f64::consts::PI;

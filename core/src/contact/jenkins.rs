@@ -9,8 +9,9 @@
 //! points are common to all elements, so that the tangent has one term of rank one for each of them,
 //! however many elements there are.
 
-use super::law::{HarmonicForce, ReturnMapJacobian};
+use super::law::HarmonicForce;
 use super::parameter::numbers;
+use super::return_map::ReturnMapJacobian;
 use super::slider_integrals::add_slipping;
 use super::slip_element::{Element, SlipElement as _};
 use super::stick_slip::{Path, StickSlipIntervals};

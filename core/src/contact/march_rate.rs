@@ -1,8 +1,8 @@
 //! What a march through a contact law carries from instant to instant: its derivative, and the
 //! friction work.
 
-use super::law::ReturnMapJacobian;
 use super::restart::Restart;
+use super::return_map::ReturnMapJacobian;
 use super::Elastic;
 use faer::Mat;
 

@@ -7,11 +7,12 @@
 //! is a monotone operator, as each of them is, so that passive structures have one steady motion.
 
 use super::backbone::Backbone;
-use super::law::{HarmonicForce, ReturnMapJacobian};
+use super::law::HarmonicForce;
 use super::loading_curve::LoadingCurve;
 use super::masing_integrals::{add_loops, every, sweep};
 use super::masing_loops::{Branch, Loops, Stretch};
 use super::parameter::{number, numbers};
+use super::return_map::ReturnMapJacobian;
 use super::stick_slip::Path;
 use super::{
     ContactLaw, Describing, Motion, Parameter, Parameters, Phase, PointSummary, Residual, SlipLoad,

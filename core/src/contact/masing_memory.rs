@@ -6,8 +6,8 @@
 //! Where a motion has more reversals than there are places, the two go whose loss changes the force
 //! least.
 
-use super::law::ReturnMapJacobian;
 use super::loading_curve::LoadingCurve;
+use super::return_map::ReturnMapJacobian;
 
 /// The remembered steps, each a sum of neighbours among those before and the new one.
 struct Steps {

@@ -14,7 +14,7 @@
 //! A contact that slips in both senses, or opens, forgets where it has begun. One pushed in one sense
 //! alone has shaken down: it touches its limit, and keeps the rest of what was assumed.
 
-use super::law::ReturnMapJacobian;
+use super::return_map::ReturnMapJacobian;
 use crate::Error;
 
 /// Force at mid-range of a contact that never slips. Its steady motion does not determine it: it

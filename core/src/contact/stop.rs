@@ -5,8 +5,9 @@
 //! one matrix T of products of the basis: `f = T (u − g e₀)`, `∂f/∂u = T`. The ends of the intervals
 //! move with u, but the force is continuous there and they add nothing.
 
-use super::law::{HarmonicForce, ReturnMapJacobian};
+use super::law::HarmonicForce;
 use super::parameter::number;
+use super::return_map::ReturnMapJacobian;
 use super::stick_slip::{crossing, Path};
 use super::{ContactLaw, Motion, Parameter, Parameters, Phase, PointState, PointSummary, SlipLoad};
 use crate::fourier::IntervalSums;

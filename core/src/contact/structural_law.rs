@@ -1,8 +1,9 @@
 //! The structure-like damper as a contact law: its harmonics from the march through one period.
 
 use super::derivative::Derivative;
-use super::law::{HarmonicForce, ReturnMapJacobian};
+use super::law::HarmonicForce;
 use super::periodic_march::{PeriodicMarch, Stretch};
+use super::return_map::ReturnMapJacobian;
 use super::slip_element::{Element, SlipElement as _};
 use super::slip_series;
 use super::{
