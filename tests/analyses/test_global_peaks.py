@@ -315,7 +315,6 @@ def test_a_missed_peak_that_friction_alone_bounds_is_found(case):
     assert curve.amplitude[-1] >= (1 - 1e-5) * height
 
 
-
 @pytest.mark.slow
 @pytest.mark.parametrize("case", MISSED["optima"], ids=lambda case: case["about"])
 def test_a_missed_optimum_is_found(case):
