@@ -182,7 +182,7 @@ def test_peaks_and_sensitivities_of_automatic_samples(frf):
     slope = {"parameter": "slip_force", "contact": 0}
     there = [one.sensitivity("tip", **slope)[30] for one in (march, frf)]
     assert there[0] == pytest.approx(there[1], rel=0.02)
-    # Marched with few samples the top has several maxima of nearly one height, and slopes of their own.
+    # With few samples the top has several maxima of nearly one height, and slopes of their own.
     fine = beam(evaluation="marched", tolerance=1e-4)
     peaks = [one.peak_sensitivity("tip", **slope) for one in (fine, frf)]
     assert peaks[0] == pytest.approx(peaks[1], rel=0.02)
