@@ -131,12 +131,12 @@ impl<'py> Columns<'py> {
     ) -> PyResult<()> {
         let count = points.len();
         let orders = 1 + points.clone().map(|(highest, _)| highest).max().unwrap_or(0);
-        let mut values = Vec::with_capacity(count * orders * width);
-        for (n, (highest, amplitudes)) in points.enumerate() {
-            for order in 0..=highest {
-                values.extend(amplitudes.iter().skip(order).step_by(highest + 1).take(width));
+        let mut values = vec![Complex64::new(0.0, 0.0); count * orders * width];
+        let size = (orders * width).max(1);
+        for (own, (highest, amplitudes)) in values.chunks_exact_mut(size).zip(points) {
+            for (i, series) in amplitudes.chunks_exact(highest + 1).take(width).enumerate() {
+                series.iter().enumerate().for_each(|(order, a)| own[order * width + i] = *a);
             }
-            values.resize((n + 1) * orders * width, Complex64::new(0.0, 0.0));
         }
         self.shaped(name, [count, orders, width], values)
     }

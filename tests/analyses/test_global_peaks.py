@@ -306,6 +306,16 @@ def test_a_missed_peak_of_a_curve_is_found(case):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("case", MISSED["undamped"], ids=lambda case: case["about"])
+def test_a_missed_peak_that_friction_alone_bounds_is_found(case):
+    model, keywords = built(case)
+    curve = ss.damper_curve(model, **{case["parameter"]: case["values"]}, **keywords)
+    last = curve.model_at(case["values"][-1])
+    (height,) = ss.forced_response(last, [case["top"]], 3).amplitude(case["dof"])
+    assert curve.amplitude[-1] >= (1 - 1e-5) * height
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("case", MISSED["optima"], ids=lambda case: case["about"])
 def test_a_missed_optimum_is_found(case):
     model, keywords = built(case)

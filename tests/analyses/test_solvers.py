@@ -179,11 +179,13 @@ def test_files_without_samples_per_point_are_read_as_long_as_the_settings_name_t
 def test_peaks_and_sensitivities_of_automatic_samples(frf):
     march = beam(evaluation="marched")
     assert march.peak("tip").amplitude == pytest.approx(frf.peak("tip").amplitude, rel=3e-4)
-    for ask in (
-        lambda result: result.peak_sensitivity("tip", parameter="slip_force", contact=0),
-        lambda result: result.sensitivity("tip", parameter="slip_force", contact=0)[30],
-    ):
-        assert ask(march) == pytest.approx(ask(frf), rel=0.02)
+    slope = {"parameter": "slip_force", "contact": 0}
+    there = [one.sensitivity("tip", **slope)[30] for one in (march, frf)]
+    assert there[0] == pytest.approx(there[1], rel=0.02)
+    # With few samples the top has several maxima of nearly one height, and slopes of their own.
+    fine = beam(evaluation="marched", tolerance=1e-4)
+    peaks = [one.peak_sensitivity("tip", **slope) for one in (fine, frf)]
+    assert peaks[0] == pytest.approx(peaks[1], rel=0.02)
     both = ss.forced_response(snecma_beam(), (150.0, 250.0), evaluation="marched")
     exact = ss.forced_response(snecma_beam(), (150.0, 250.0))
     assert both.converged.all()

@@ -333,6 +333,13 @@ def test_a_dof_of_hardly_any_mass_is_refused_by_name(analysis):
 
 
 @pytest.mark.timeout(60)
+def test_a_run_that_would_take_a_million_steps_is_refused_by_name():
+    with pytest.raises(ss.ModelError, match=r"^mass of dof 'pad': with 1e-09 kg .* condense"):
+        ss.transient(light(1e-9), 85.0, 20)
+    assert ss.transient(light(1e-9), 85.0, 1).periods == 1
+
+
+@pytest.mark.timeout(60)
 def test_harmonic_balance_takes_a_dof_of_hardly_any_mass():
     assert ss.forced_response(light(1e-12), [85.0], 15).converged.all()
     balance = ss.forced_response(light(1e-6), [85.0], 63)

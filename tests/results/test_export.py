@@ -169,6 +169,7 @@ def test_a_sweep_is_one_table_with_its_parameter(sweeps, tmp_path):
         amplitude = sweep.to_dataset()["amplitude"].values
         np.testing.assert_array_equal(loadmat(tmp_path / "a.mat")["amplitude"], amplitude)
     pytest.importorskip("openpyxl")
+    pytest.importorskip("xlsxwriter")
     sweeps[0].export(tmp_path / "a.xlsx")
     assert len(pd.read_excel(tmp_path / "a.xlsx", sheet_name="omega-dof")) == 3 * 36
 
@@ -234,6 +235,7 @@ def test_parquet_has_every_bit(kind, results, tmp_path):
 @pytest.mark.parametrize("kind", KINDS)
 def test_excel_has_sixteen_digits(kind, results, tmp_path):
     openpyxl = pytest.importorskip("openpyxl")
+    pytest.importorskip("xlsxwriter")
     results[kind].export(tmp_path / "a.xlsx")
     book, tables = openpyxl.load_workbook(tmp_path / "a.xlsx"), results[kind].tables()
     about, *sheets = book.sheetnames
@@ -312,6 +314,7 @@ def test_a_universal_file_has_the_functions_of_a_sweep(tmp_path):
 
 def test_texts_are_no_formulas(tmp_path):
     openpyxl = pytest.importorskip("openpyxl")
+    pytest.importorskip("xlsxwriter")
     structure = ss.Structure([[2.0]], [[8.0]], [[0.4]], dofs=["=1+1"])
     model = ss.Model(structure, [], [ss.Force("=1+1", 1.0)])
     ss.forced_response(model, [1.0, 2.0], 1).export(tmp_path / "a.xlsx")
@@ -348,7 +351,7 @@ def test_nonsense_is_refused_in_one_line(name, table, message, frf, tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize(("name", "package"), [("parquet", "pyarrow"), ("xlsx", "openpyxl")])
+@pytest.mark.parametrize(("name", "package"), [("parquet", "pyarrow"), ("xlsx", "xlsxwriter")])
 def test_a_missing_package_is_named_with_its_extra(name, package, frf, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, package, None)
     with pytest.raises(ss.ModelError) as refused:
@@ -357,7 +360,7 @@ def test_a_missing_package_is_named_with_its_extra(name, package, frf, tmp_path,
 
 
 def test_a_table_too_long_for_a_sheet_is_refused(frf, tmp_path, monkeypatch):
-    pytest.importorskip("openpyxl")
+    pytest.importorskip("xlsxwriter")
     monkeypatch.setattr(export, "_ROWS", 13)
     with pytest.raises(ss.ModelError, match="has 216 rows, a sheet 12; export it"):
         frf.export(tmp_path / "a.xlsx")
@@ -366,7 +369,7 @@ def test_a_table_too_long_for_a_sheet_is_refused(frf, tmp_path, monkeypatch):
 
 
 def test_what_a_cell_cannot_hold_is_refused(tmp_path, monkeypatch):
-    pytest.importorskip("openpyxl")
+    pytest.importorskip("xlsxwriter")
     # Results saved by earlier versions may have such names.
     monkeypatch.setattr("stickslip.checks._NO_TEXT", frozenset())
     structure = ss.Structure([[2.0]], [[8.0]], [[0.4]], dofs=["a\x01"])

@@ -7,6 +7,9 @@ import ast
 import errno
 import os
 import re
+import signal
+import subprocess
+import sys
 import time
 from pathlib import Path
 
@@ -114,7 +117,7 @@ def save(frf, target):
 
 
 def export(frf, target):
-    for end, package in ((".parquet", "pyarrow"), (".xlsx", "openpyxl")):
+    for end, package in ((".parquet", "pyarrow"), (".xlsx", "xlsxwriter")):
         if target.suffix == end:
             pytest.importorskip(package)
     frf.export(target)
@@ -211,6 +214,29 @@ def test_every_writer_ends_in_one_line_and_leaves_what_was_there(name, frf, tmp_
         assert message in line
         assert names(tmp_path) == [name]
         assert target.read_bytes() == whole
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not hasattr(signal, "SIGXFSZ"), reason="the system has no limit of files")
+@pytest.mark.parametrize("end", ["csv", "parquet", "xlsx", "mat", "uff"])
+def test_no_export_needs_temporary_files(end, frf, tmp_path):
+    for one, package in (("parquet", "pyarrow"), ("xlsx", "xlsxwriter")):
+        if end == one:
+            pytest.importorskip(package)
+    frf.save(tmp_path / "a.nc")
+    # No file may be longer, neither those of temporary folders.
+    command = ["export", "a.nc", "--out", f"a.{end}"]
+    code = (
+        "import resource; from stickslip.cli import app;"
+        f"resource.setrlimit(resource.RLIMIT_FSIZE, (500, 500)); app({command})"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True
+    )
+    (line,) = done.stderr.splitlines()
+    assert done.returncode == 2
+    assert line.startswith(f"error: a.{end}: cannot be written (File too large)")
+    assert names(tmp_path) == ["a.nc"]
 
 
 @pytest.mark.slow

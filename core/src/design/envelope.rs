@@ -7,6 +7,9 @@ use std::ops::Range;
 /// Share by which an interpolant that no point has confirmed may err: it may hide a maximum this
 /// much higher.
 const UNSEEN: f64 = 0.5;
+/// Share by which a curve may rise above the higher end of an interval in which no point has confirmed
+/// the interpolant: one point inside has to tell.
+const UNCONFIRMED: f64 = 0.1;
 /// The error of an interpolant falls with the fourth power of its width; this times as much is
 /// allowed for.
 const CAUTION: f64 = 4.0;
@@ -206,8 +209,11 @@ impl Envelope {
             let promises = self.groups[group].clone().filter(|_| reference > 0.0).flat_map(|i| {
                 let tangent = Interpolant::tangent(left[i], right[i]);
                 let tangent = (tangent.1 > (1.0 + BROAD) * reference).then_some(tangent);
+                let higher = left[i].height.max(right[i].height);
+                let unconfirmed =
+                    (errors[i] == UNSEEN).then_some((0.5, (1.0 + UNCONFIRMED) * higher));
                 let cubic = Interpolant::new(left[i], right[i], reference).promise(errors[i]);
-                tangent.into_iter().chain([cubic])
+                tangent.into_iter().chain(unconfirmed).chain([cubic])
             });
             promises.fold((0.5, 0.0), |best, one| if one.1 > best.1 { one } else { best })
         };

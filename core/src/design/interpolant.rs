@@ -43,12 +43,17 @@ impl Interpolant {
     }
 
     /// Where and how high a curve may be that keeps the slope with which it leaves an end for half the
-    /// interval, or, if it rises from both ends, for twice of it: what friction cuts off is broader
-    /// than a resonance, or has a kink, and then the top of a parabola through both ends is the better
-    /// place to look.
+    /// interval, or, if it rises from both ends or against the way to the other, for twice of it: what
+    /// friction cuts off is broader than a resonance, or has a kink, and then the top of a parabola
+    /// through both ends is the better place to look.
     pub(super) fn tangent(left: Knot, right: Knot) -> (f64, f64) {
         let rises = |near: Knot, far: Knot| (far.at - near.at) * near.slope;
-        let part = if rises(left, right).min(rises(right, left)) > 0.0 { 2.0 } else { 0.5 };
+        let (up, down) = (rises(left, right), rises(right, left));
+        let (first, last) = (left.height, right.height);
+        let against =
+            (up > 0.0 && down < 0.0 && last < first) || (up < 0.0 && down > 0.0 && first < last);
+        let hides = against || up.min(down) > 0.0;
+        let part = if hides { 2.0 } else { 0.5 };
         let from = |near: Knot, far: Knot| {
             let rise = rises(near, far);
             let share = 0.5 * rise / (near.height + rise - far.height);

@@ -31,6 +31,7 @@ mod peak_map;
 mod quasi_static;
 mod samples;
 mod search;
+mod slip_onset;
 mod upper_branch;
 
 pub use bounds::bound;

@@ -13,11 +13,16 @@ pub(super) struct Sample {
     pub(super) unknowns: Unknowns,
     /// Derivative of the unknowns in frequency.
     pub(super) rate: Vec<f64>,
-    /// Whether no point slips.
-    pub(super) sticks: bool,
+    /// Which points slip.
+    pub(super) slips: Vec<bool>,
 }
 
 impl Sample {
+    /// Whether no point slips.
+    pub(super) fn sticks(&self) -> bool {
+        !self.slips.contains(&true)
+    }
+
     fn extrapolated(&self, omega: f64) -> Unknowns {
         let step = omega - self.at;
         let values = self.unknowns.values().iter().zip(&self.rate).map(|(x, r)| x + step * r);

@@ -19,8 +19,9 @@ use crate::Error;
 const MOST_FAILURES: usize = 40;
 /// Gain in height, relative, that an interval without a solution must not promise.
 const DOUBT: f64 = 1e-6;
-/// Distance at which an undamped resonance is passed, relative to the frequency.
-const ASIDE: f64 = 1e-8;
+/// Distance at which an undamped resonance is passed, relative to the frequency: slopes err by rounding over
+/// its square.
+const ASIDE: f64 = 1e-7;
 /// Distance at which a resonance is looked at from the side, in bandwidths.
 const FLANK: f64 = 0.5;
 /// What others overlay is seen if there are points on both sides within this share.
@@ -31,12 +32,6 @@ const SHARE: f64 = 2.0;
 const OVERLAID: f64 = 10.0;
 /// Gain in height, relative, that the shortest interval must not promise.
 const UNRESOLVED: f64 = 1e-3;
-/// Share of an interval within which the frequency is known at which slip begins, …
-const ONSET: f64 = 4e-3;
-/// … unless it is as short as this, relative to the frequency.
-const SHORT: f64 = 1e-7;
-/// Share of the highest point from which such a point is a rival.
-const ONSET_RIVAL: f64 = 0.5;
 /// Steps that bring a top to where its slope vanishes.
 const STEPS: usize = 3;
 
@@ -80,14 +75,16 @@ pub(super) struct Found {
 /// A search under way.
 pub(super) struct Search<'a, 'b> {
     residual: Residual,
-    aim: &'b Aim,
+    pub(super) aim: &'b Aim,
     dofs: Vec<usize>,
-    balance: &'b mut ForcedBalance<'a>,
+    pub(super) balance: &'b mut ForcedBalance<'a>,
     pub(super) envelope: Envelope,
     /// Points without a solution.
     failures: usize,
     /// How the last of them ended.
     failure: Option<PointStatus>,
+    /// Where one of several contacts begins to slip, as far as that has been looked at [rad/s].
+    pub(super) changes: Vec<f64>,
 }
 
 impl<'a, 'b> Search<'a, 'b> {
@@ -99,7 +96,16 @@ impl<'a, 'b> Search<'a, 'b> {
     ) -> Self {
         let dofs = aim.groups.concat();
         let envelope = Envelope::new(aim.groups.iter().map(Vec::len), narrowest);
-        Self { residual, aim, dofs, balance, envelope, failures: 0, failure: None }
+        Self {
+            residual,
+            aim,
+            dofs,
+            balance,
+            envelope,
+            failures: 0,
+            failure: None,
+            changes: Vec::new(),
+        }
     }
 
     /// Finds the highest points from a first look and the samples of a similar response; `None` if
@@ -132,7 +138,7 @@ impl<'a, 'b> Search<'a, 'b> {
             }
             let next = self.envelope.most_promising(self.aim.precision.gain);
             let Some((interval, share)) = next.filter(|_| splits < self.aim.most_points) else {
-                if self.look_at_onsets()? {
+                if self.look_at_onsets()? || self.look_at_changes(look.narrowest())? {
                     continue;
                 }
                 break;
@@ -176,39 +182,6 @@ impl<'a, 'b> Search<'a, 'b> {
         let solved = sample.is_some();
         sample.into_iter().for_each(|sample| self.envelope.insert(sample));
         Ok(solved)
-    }
-
-    /// Looks at the frequencies at which slip begins: what friction has held down may have a peak there that
-    /// no slope on either side tells of. Whether there are any that no point has seen.
-    fn look_at_onsets(&mut self) -> Result<bool, Error> {
-        let mixed = |ends: &&[Sample]| ends[0].sticks != ends[1].sticks;
-        let intervals = self.envelope.samples.windows(2).filter(mixed);
-        let intervals: Vec<[f64; 2]> = intervals
-            .map(|ends| if ends[0].sticks { [0, 1] } else { [1, 0] }.map(|i| ends[i].at))
-            .collect();
-        let mut found = false;
-        for [mut stuck, mut slipping] in intervals {
-            let mut part = slipping - stuck;
-            if part.abs() <= SHORT * stuck || !self.balance.sticks(stuck + ONSET * part)? {
-                continue;
-            }
-            let enough = 0.25 * ONSET * part.abs();
-            while part.abs() > enough {
-                let middle = 0.5 * (stuck + slipping);
-                *(if self.balance.sticks(middle)? { &mut stuck } else { &mut slipping }) = middle;
-                part = slipping - stuck;
-            }
-            let Some(sample) = self.solve(stuck, None)? else { continue };
-            let rivals = (0..self.aim.groups.len()).any(|group| {
-                self.envelope.height_of(&sample, group) > ONSET_RIVAL * self.envelope.height(group)
-            });
-            if rivals {
-                let before = self.envelope.samples.len();
-                self.envelope.insert(sample);
-                found |= self.envelope.samples.len() > before;
-            }
-        }
-        Ok(found)
     }
 
     /// Looks at a resonance, or beside it if it cannot be solved there; and on both sides if others
@@ -294,7 +267,7 @@ impl<'a, 'b> Search<'a, 'b> {
     }
 
     /// A point inside an interval: at the share asked for, or halfway from there to an end.
-    fn inside(&mut self, interval: usize, share: f64) -> Result<Option<Sample>, Error> {
+    pub(super) fn inside(&mut self, interval: usize, share: f64) -> Result<Option<Sample>, Error> {
         let [left, right] = [interval, interval + 1].map(|i| self.envelope.samples[i].at);
         for share in [share, 0.5 * share, 0.5 * (1.0 + share)] {
             let solved = self.solve(left + share * (right - left), None)?;
@@ -316,7 +289,11 @@ impl<'a, 'b> Search<'a, 'b> {
 
     /// Solves at one frequency: from `start` or the samples around it, from the stuck response,
     /// or from either neighbour as it is.
-    fn solve(&mut self, omega: f64, start: Option<Unknowns>) -> Result<Option<Sample>, Error> {
+    pub(super) fn solve(
+        &mut self,
+        omega: f64,
+        start: Option<Unknowns>,
+    ) -> Result<Option<Sample>, Error> {
         let start = start.or_else(|| predicted(&self.envelope.samples, omega));
         let around = self.envelope.around(omega);
         let neighbours: Vec<_> = around.map(|sample| Some(sample.unknowns.clone())).collect();
@@ -359,8 +336,8 @@ impl<'a, 'b> Search<'a, 'b> {
         };
         let at = point.omega;
         let knots = jets.iter().map(|&(height, slope)| Knot { at, height, slope }).collect();
-        let sticks = point.contacts.iter().all(|one| one.slip_fraction == 0.0);
-        Ok(Some(Sample { at, knots, unknowns: unknowns.clone(), rate, sticks }))
+        let slips = point.contacts.iter().map(|one| one.slip_fraction > 0.0).collect();
+        Ok(Some(Sample { at, knots, unknowns: unknowns.clone(), rate, slips }))
     }
 
     /// A start from a similar response: its solution, moved by as much as the nearest sample

@@ -9,6 +9,8 @@ use std::sync::OnceLock;
 /// States of the contacts, at most: all of a few points; of more the stuck and the slipping one, and
 /// those in which one point differs from all others.
 const MOST_STATES: usize = 16;
+/// Shares of their stiffness that points carry at higher harmonics when they slip in a part of the period.
+const CARRIED: [f64; 3] = [0.25, 0.5, 0.75];
 /// DOFs above which only stuck and free natural frequencies are known.
 const MOST_DOFS: usize = 400;
 
@@ -21,6 +23,8 @@ pub(super) struct State {
     pub(super) contacts: Vec<Vec<[f64; 2]>>,
     /// Which points slip.
     pub(super) slips: Vec<bool>,
+    /// Share of the stiffness that these carry all the same: they slip in a part of the period.
+    pub(super) carried: f64,
     /// Whether all points that can slip do.
     pub(super) all: bool,
 }
@@ -67,4 +71,18 @@ pub(super) fn slip_sets(limits: &[f64]) -> Vec<Vec<bool>> {
         sets.extend((0..count).flat_map(|one| [state(&|i| i == one), state(&|i| i != one)]));
     }
     sets
+}
+
+/// The points that slip in a part of the period in each state that matters, all or, of a few, one, and the
+/// share of their stiffness that they carry.
+pub(super) fn partial_sets(limits: &[f64]) -> Vec<(Vec<bool>, f64)> {
+    let mut sets = slip_sets(limits);
+    let count = |slips: &[bool]| slips.iter().filter(|slips| **slips).count();
+    let all_counts: Vec<usize> = sets.iter().map(|slips| count(slips)).collect();
+    let least = all_counts.iter().copied().min().unwrap_or(0);
+    let most = all_counts.iter().copied().max().unwrap_or(0);
+    let few = sets.len() <= MOST_STATES;
+    let matters = |own: usize| own > least && (own == most || few && own == least + 1);
+    sets.retain(|slips| matters(count(slips)));
+    sets.iter().flat_map(|slips| CARRIED.map(|carried| (slips.clone(), carried))).collect()
 }

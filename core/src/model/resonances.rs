@@ -6,7 +6,7 @@
 //! carry moves it from there.
 
 use super::body::Body;
-use super::contact_states::{slip_sets, State};
+use super::contact_states::{partial_sets, slip_sets, State};
 use super::Model;
 use crate::structure::Poles;
 use crate::Error;
@@ -55,7 +55,7 @@ impl Model {
     ) -> Result<Vec<Resonance>, Error> {
         let forced = self.compliance.forced_harmonics();
         let lowest = forced.iter().copied().find(|&k| k > 0).unwrap_or(1);
-        let limits: Vec<f64> = self.laws.iter().flat_map(|law| law.limits()).collect();
+        let limits: Vec<f64> = self.slip_limits().collect();
         let stiffness = self.contact_stiffness();
         let stiffness: Vec<f64> = (0..limits.len()).map(|i| stiffness[(i, i)]).collect();
         let inside = |omega: f64| (low..=high).contains(&omega);
@@ -80,13 +80,14 @@ impl Model {
             // A slipping contact bears a square wave at most.
             let share = 4.0 / PI * (lowest as f64 / order).min(1.0);
             let bearing = Bearing { load: &load, limits: &limits, stiffness: &stiffness, share };
-            for state in states {
+            // A load of its own moves a resonance as `shift` says.
+            for state in states.iter().filter(|state| state.carried == 0.0 || !is_forced) {
                 let highest = state.poles.values.iter().map(|s| s.norm()).fold(0.0, f64::max);
                 for (j, pole) in state.poles.values.iter().enumerate() {
                     let driven = bearing.driven(state, j);
-                    let decay = pole.re.abs();
+                    let decay = pole.re.abs() + bearing.lost(state, j, order);
                     let damped = decay > UNDAMPED * highest;
-                    let reach = bearing.reach_beyond(states, state, j);
+                    let reach = bearing.reach_beyond(states, state, j, decay);
                     let moved = shift(driven, decay, &|| bearing.points(state, j));
                     for omega in [Some(pole.im), moved.map(|by| pole.im + by)] {
                         let Some(omega) = omega.map(|w| w / order).filter(|&w| inside(w)) else {
@@ -130,27 +131,45 @@ impl Model {
         }
     }
 
-    fn find_states(&self, diameter: usize) -> Result<Vec<State>, Error> {
-        let limits: Vec<f64> = self.laws.iter().flat_map(|law| law.limits()).collect();
-        slip_sets(&limits).iter().map(|slips| self.state(diameter, slips)).collect()
+    fn slip_limits(&self) -> impl Iterator<Item = f64> + '_ {
+        self.laws.iter().flat_map(|law| law.limits())
     }
 
-    fn state(&self, diameter: usize, slips: &[bool]) -> Result<State, Error> {
-        let (stick, stiffness) = self.condensed_stiffness(slips)?;
+    fn find_states(&self, diameter: usize) -> Result<Vec<State>, Error> {
+        let limits: Vec<f64> = self.slip_limits().collect();
+        let whole = slip_sets(&limits).into_iter().map(|slips| (slips, 0.0));
+        let sets = whole.chain(partial_sets(&limits));
+        sets.map(|(slips, carried)| self.state(diameter, &slips, carried)).collect()
+    }
+
+    fn state(&self, diameter: usize, slips: &[bool], carried: f64) -> Result<State, Error> {
         let structure = &self.structure;
+        // What carries all of its stiffness sticks.
+        let all_stick: Vec<bool> = self.slip_limits().map(|limit| limit == 0.0).collect();
+        let parts = [(slips, 1.0 - carried), (&all_stick, carried)];
+        let parts = parts.into_iter().filter(|(_, share)| *share > 0.0);
         let (poles, rows) = if let Body::Wave { cyclic, next } = &self.body {
             let rows = cyclic.rows_at(diameter, self.ports.rows.as_ref(), Mat::as_ref(next));
-            let kept = Mat::from_fn(stick.len(), rows.ncols(), |i, j| rows[(stick[i], j)]);
-            let stiffness =
-                Mat::from_fn(stick.len(), stick.len(), |i, j| c64::new(stiffness[(i, j)], 0.0));
-            let [mass, damping, free] = cyclic.at_diameter(diameter);
-            let restrained = free + kept.adjoint() * (stiffness * &kept);
+            let [mass, damping, mut restrained] = cyclic.at_diameter(diameter);
+            for (slips, share) in parts {
+                let (stick, stiffness) = self.condensed_stiffness(slips)?;
+                let kept = Mat::from_fn(stick.len(), rows.ncols(), |i, j| rows[(stick[i], j)]);
+                let stiffness = Mat::from_fn(stick.len(), stick.len(), |i, j| {
+                    c64::new(share * stiffness[(i, j)], 0.0)
+                });
+                restrained += kept.adjoint() * (stiffness * &kept);
+            }
             let matrices = [mass.as_ref(), damping.as_ref(), restrained.as_ref()];
             (Poles::hermitian(matrices)?, rows)
         } else {
             let all = &self.ports.rows;
-            let kept = Mat::from_fn(stick.len(), all.ncols(), |i, j| all[(stick[i], j)]);
-            let restrained = structure.restrained_stiffness(kept.as_ref(), stiffness.as_ref());
+            let mut restrained = Mat::zeros(structure.dofs(), structure.dofs());
+            for (slips, share) in parts {
+                let (stick, stiffness) = self.condensed_stiffness(slips)?;
+                let kept = Mat::from_fn(stick.len(), all.ncols(), |i, j| all[(stick[i], j)]);
+                let part = structure.restrained_stiffness(kept.as_ref(), stiffness.as_ref());
+                restrained += faer::Scale(share) * part;
+            }
             let matrices = [structure.mass(), structure.damping(), restrained.as_ref()];
             let rows = Mat::from_fn(all.nrows(), all.ncols(), |i, j| c64::new(all[(i, j)], 0.0));
             (Poles::real(matrices)?, rows)
@@ -169,9 +188,9 @@ impl Model {
         let contacts = (0..poles.values.len())
             .map(|j| (0..rows.nrows()).map(|i| effect(j, i)).collect())
             .collect();
-        let limits = self.laws.iter().flat_map(|law| law.limits());
-        let all = limits.zip(slips).all(|(limit, slips)| *slips || limit.is_infinite());
-        Ok(State { poles, contacts, slips: slips.to_vec(), all })
+        let mut limits = self.slip_limits().zip(slips);
+        let all = carried == 0.0 && limits.all(|(limit, slips)| *slips || limit.is_infinite());
+        Ok(State { poles, contacts, slips: slips.to_vec(), carried, all })
     }
 }
 
@@ -204,6 +223,17 @@ impl Bearing<'_> {
         slipping.map(|([effect, _], limit)| self.share * effect * limit).sum()
     }
 
+    /// Decay of a pole by the points that slip in a part of the period: a motion at a higher harmonic
+    /// leaves in each of them, after each stick, a share of its force, 1/(πk) in the mean over all
+    /// lengths of the stick.
+    fn lost(&self, state: &State, j: usize, order: f64) -> f64 {
+        if state.carried == 0.0 {
+            return 0.0;
+        }
+        let points = self.points(state, j);
+        points.map(|one| one.effect * one.seen * one.stiffness).sum::<f64>() / (PI * order)
+    }
+
     /// The points of a pole.
     fn points<'s>(
         &'s self,
@@ -220,10 +250,10 @@ impl Bearing<'_> {
     }
 
     /// Displacement of every DOF that load and friction can cause in a state.
-    fn reach(&self, state: &State, j: usize) -> Vec<f64> {
+    fn reach(&self, state: &State, j: usize, decay: f64) -> Vec<f64> {
         let cause = self.driven(state, j) + self.friction(state, j);
         let right = state.poles.right.col(j);
-        let (height, shown) = (cause / state.poles.values[j].re.abs(), NOISE * right.norm_l2());
+        let (height, shown) = (cause / decay, NOISE * right.norm_l2());
         let seen = |i: usize| match right[i].norm() {
             seen if seen > shown && cause > 0.0 => seen * height,
             _ => 0.0,
@@ -233,18 +263,18 @@ impl Bearing<'_> {
 
     /// The same, with that of the resonances on either side in the state in which those points slip,
     /// too, that could not stick: what these uncouple may resonate by itself.
-    fn reach_beyond(&self, states: &[State], state: &State, j: usize) -> Vec<f64> {
-        let mut reach = self.reach(state, j);
+    fn reach_beyond(&self, states: &[State], state: &State, j: usize, decay: f64) -> Vec<f64> {
+        let mut reach = self.reach(state, j, decay);
         let pole = state.poles.values[j];
         let cause = self.driven(state, j) + self.friction(state, j);
-        let height = if cause > 0.0 { cause / pole.re.abs() } else { 0.0 };
+        let height = if cause > 0.0 { cause / decay } else { 0.0 };
         let tears = |point: &SlippingPoint| point.stiffness * point.seen * height > point.limit;
         let torn: Vec<bool> = self.points(state, j).map(|point| tears(&point)).collect();
         let slips: Vec<bool> = torn.iter().zip(&state.slips).map(|(a, b)| *a || *b).collect();
-        if slips == state.slips {
+        if slips == state.slips || state.carried > 0.0 {
             return reach;
         }
-        let beyond = states.iter().find(|other| other.slips == slips);
+        let beyond = states.iter().find(|other| other.slips == slips && other.carried == 0.0);
         let Some(beyond) = beyond.or_else(|| states.iter().find(|other| other.all)) else {
             return reach;
         };
@@ -253,7 +283,7 @@ impl Bearing<'_> {
         let above = (0..values.len()).filter(|&i| values[i].im > pole.im);
         let by_frequency = |a: &usize, b: &usize| values[*a].im.total_cmp(&values[*b].im);
         for i in [below.max_by(by_frequency), above.min_by(by_frequency)].into_iter().flatten() {
-            let other = self.reach(beyond, i);
+            let other = self.reach(beyond, i, values[i].re.abs());
             reach.iter_mut().zip(other).for_each(|(reach, other)| *reach = reach.max(other));
         }
         reach

@@ -165,6 +165,10 @@ impl Classifier {
                 break Reason::Unbounded;
             }
             if let Some(closed) = returns.closed() {
+                // Around an equilibrium away from the origin a motion that fades seems to repeat itself.
+                if self.passive {
+                    break Reason::Passive;
+                }
                 period = closed.period;
                 break Reason::Closed;
             }
@@ -205,6 +209,7 @@ impl Classifier {
             match run {
                 Ok(()) => passed += 1,
                 Err(Halt::Unbounded) => break Reason::Overflow,
+                Err(Halt::Contradiction) if self.passive => break Reason::Passive,
                 Err(Halt::Contradiction) => break Reason::Contradiction,
                 Err(Halt::Interrupted | Halt::Steps) => break Reason::Interrupted,
             }

@@ -7,6 +7,7 @@
 //! vanishes. All of these are zeros of polynomials, located to rounding.
 
 use super::flow_event::{Event, FlowEvent, FlowSegment, Halt};
+use super::flow_next::reach_of;
 use super::microslip::Turn;
 use super::modal_system::{dot, ContactState, ModalSystem};
 use super::power_series::PowerSeries;
@@ -17,6 +18,8 @@ use crate::contact::{Bound, PointState};
 const LOOK: usize = 32;
 /// Changes of state at one instant after which the states are contradictory.
 const CHANGES: usize = 8;
+/// Way of a contact without sliders, relative to its displacement, at which rounding makes it turn.
+const RESTING: f64 = 1e-8;
 /// Share of a step that is no step.
 const INSTANT: f64 = 1e-13;
 
@@ -98,7 +101,7 @@ impl<'a> Flow<'a> {
         observe: &mut dyn FnMut(FlowEvent<'_>),
     ) -> Result<(), Halt> {
         let mut regime = ContactState::new(self.system, &state.points);
-        let mut changes = 0;
+        let (mut changes, most) = (0, CHANGES * self.system.points());
         while state.time < until {
             if !state.is_bounded() {
                 return Err(Halt::Unbounded);
@@ -119,6 +122,8 @@ impl<'a> Flow<'a> {
             for point in 0..self.system.points() {
                 match self.next(&regime, point, natural, length) {
                     Next::Stay => {}
+                    // Which branch it is on no longer counts.
+                    Next::Now(_) if changes == most && self.rests(point, natural) => {}
                     Next::Now(to) => {
                         (length, change) = (0.0, Some((point, to)));
                         break;
@@ -142,7 +147,7 @@ impl<'a> Flow<'a> {
             }
             let Some((point, to)) = change else { continue };
             changes += 1;
-            if changes > CHANGES * self.system.points() {
+            if changes > most {
                 return Err(Halt::Contradiction);
             }
             let speed = self.system.contact_displacement(&state.velocity);
@@ -167,6 +172,13 @@ impl<'a> Flow<'a> {
             regime = after;
         }
         Ok(())
+    }
+
+    /// Whether a contact without sliders moves within a length by no more than rounding.
+    fn rests(&self, point: usize, length: f64) -> bool {
+        let u = self.series.contact(point);
+        let is_own = self.system.microslips.iter().any(|own| own.point == point);
+        is_own && reach_of(u, length) <= RESTING * u[0].abs()
     }
 
     fn move_on(&self, state: &mut State, length: f64) {

@@ -15,9 +15,13 @@ use std::cell::Cell;
 use std::f64::consts::TAU;
 use std::time::Instant;
 
-/// Highest rate of a motion over the frequency of its period that is followed: a period of more than
-/// a million steps is one of a mass that is hardly there.
+/// Highest rate of a motion over the frequency of its period that steps of their own choice follow: faster
+/// is what hardly has a mass.
 const FASTEST: f64 = 1e6;
+/// The same of the exact flow, over the number of periods: it takes about so many steps in all, …
+const STEPS: f64 = 5e5;
+/// … and over any number of them, as in exact orbits.
+const FASTEST_EXACT: f64 = 3e4;
 
 /// Follows a motion from `start`, or from rest, over periods of the excitation.
 ///
@@ -36,7 +40,11 @@ pub fn transient(
         Scheme::Exact => ModalSystem::new(model)?,
         Scheme::RungeKutta(_) => ModalSystem::marched(model)?,
     };
-    system.check_pace(model, settings.omega, FASTEST)?;
+    let fastest = match settings.scheme {
+        Scheme::Exact => (STEPS / settings.periods as f64).max(FASTEST_EXACT),
+        Scheme::RungeKutta(_) => FASTEST,
+    };
+    system.check_pace(model, settings.omega, fastest)?;
     Error::check_dofs(observe, system.modes())?;
     let mut state = match start {
         Some(values) => State::from_dofs(&system, values)?,

@@ -5,7 +5,8 @@ from __future__ import annotations
 import io
 import math
 import os
-from collections.abc import Callable, Mapping
+import re
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any, ClassVar, Literal, NamedTuple, Protocol, TypeAlias
 
@@ -13,13 +14,15 @@ import numpy as np
 
 from stickslip.checks import brief, file_path, optional_package, text, unknown
 from stickslip.errors import ModelError
-from stickslip.files import refusal, require_place, write
+from stickslip.files import require_place, write
 from stickslip.io.frf import Frf, universal_file
 from stickslip.results.dataset import Dataset
 from stickslip.results.table import Frame, Tables
 
 _ROWS, _COLUMNS, _CHARACTERS = 2**20, 2**14, 2**15 - 1
 """Of a sheet, and of one of its cells."""
+_CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f]")
+"""What XML has no characters for."""
 _TITLE = 31
 """Characters of the name of a sheet."""
 _ABOUT = "about"
@@ -89,8 +92,8 @@ def _parquet(result: Exported, file: Path, table: str | None) -> bytes:
     return content.getvalue()
 
 
-def _excel(result: Exported, file: Path, table: str | None) -> bytes:
-    openpyxl = optional_package("openpyxl", f"{file}: Excel files", extra="export")
+def _excel(result: Exported, file: Path, table: str | None) -> memoryview:
+    xlsxwriter = optional_package("xlsxwriter", f"{file}: Excel files", extra="export")
     tables = result.tables()
     names = list(tables) if table is None else [table_of(result, tables, table)]
     for name in names:
@@ -99,43 +102,39 @@ def _excel(result: Exported, file: Path, table: str | None) -> bytes:
                 f"{file}: the table {name} has {tables.rows(name)} rows, a sheet {_ROWS - 1}; "
                 "export it as .csv or .parquet, or give table= another one"
             )
-    book = openpyxl.Workbook()
-    about = book.active
-    about.title = _ABOUT
-    about.append(["sheet", "table", "column", "unit", "meaning"])
-    for title, name in zip(_titles(names), names, strict=True):
-        frame, sheet = tables[name], book.create_sheet(title)
-        for column, unit in frame.attrs["units"].items():
-            meaning = frame.attrs["meanings"][column]
-            row = [title, name, column, unit, meaning]
-            about.append([_cell(openpyxl, about, file, one) for one in row])
-        sheet.append([_cell(openpyxl, sheet, file, name) for name in headed(frame)])
-        for row in frame.itertuples(index=False, name=None):
-            sheet.append([_cell(openpyxl, sheet, file, value) for value in row])
     content = io.BytesIO()
-    try:
-        # The package makes its sheets in temporary files.
-        book.save(content)
-    except OSError as error:
-        raise refusal(file, "cannot be written", error) from error
-    return content.getvalue()
+    # Without temporary files: their disk may be full.
+    options = {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False}
+    book = xlsxwriter.Workbook(content, options)
+    about = book.add_worksheet(_ABOUT)
+    columns = [["sheet", "table", "column", "unit", "meaning"]]
+    for title, name in zip(_titles(names), names, strict=True):
+        frame, meanings = tables[name], tables[name].attrs["meanings"]
+        units = frame.attrs["units"].items()
+        columns += [[title, name, column, unit, meanings[column]] for column, unit in units]
+        _fill(book.add_worksheet(title), file, [list(headed(frame))])
+        _fill(book.get_worksheet_by_name(title), file, frame.itertuples(index=False), first=1)
+    _fill(about, file, columns)
+    book.close()
+    return content.getbuffer()
 
 
-def _cell(openpyxl: Any, sheet: Any, file: Path, value: Any) -> Any:
-    """Return what a cell holds: numbers, texts that are no formulas, nothing for not-a-number."""
-    if isinstance(value, float) and not math.isfinite(value):
-        return None if math.isnan(value) else str(value)
-    if not isinstance(value, str):
-        return value
-    if len(value) > _CHARACTERS or openpyxl.cell.cell.ILLEGAL_CHARACTERS_RE.search(value):
-        raise ModelError(
-            f"{file}: a cell cannot hold {brief(value)}; export it as .csv or .parquet"
-        )
-    if not value.startswith("="):
-        return value
-    cell = openpyxl.cell.WriteOnlyCell(sheet, value)
-    cell.data_type = "s"
-    return cell
+def _fill(sheet: Any, file: Path, rows: Iterable[Iterable[Any]], first: int = 0) -> None:
+    """Write rows into a sheet: numbers, texts, and nothing for what is not a number."""
+    for row, cells in enumerate(rows, first):
+        for column, value in enumerate(cells):
+            if isinstance(value, float) and not math.isfinite(value):
+                value = "" if math.isnan(value) else str(value)
+            if isinstance(value, str) and not _fits(value):
+                raise ModelError(
+                    f"{file}: a cell cannot hold {brief(value)}; export it as .csv or .parquet"
+                )
+            sheet.write(row, column, value)
+
+
+def _fits(text: str) -> bool:
+    """Return whether a cell can hold a text, as it is."""
+    return len(text) <= _CHARACTERS and not _CONTROL.search(text)
 
 
 def _titles(names: list[str]) -> list[str]:

@@ -184,7 +184,7 @@ class Result(Frozen, ABC):
         them as sheets, with units in the headers; `.mat` (MATLAB) holds the variables of
         `to_dataset` as arrays; `.uff` and `.unv` (Universal Files) the receptances of a forced
         response. Files of `save` alone can be loaded again. Parquet needs the package pyarrow,
-        Excel openpyxl, Universal Files pyuff.
+        Excel XlsxWriter, Universal Files pyuff.
 
         Parameters
         ----------
