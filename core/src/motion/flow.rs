@@ -7,9 +7,9 @@
 //! vanishes. All of these are zeros of polynomials, located to rounding.
 
 use super::flow_event::{Event, FlowEvent, FlowSegment, Halt};
-use super::flow_next::reach_of;
 use super::microslip::Turn;
 use super::modal_system::{dot, ContactState, ModalSystem};
+use super::polynomial::reach_of;
 use super::power_series::PowerSeries;
 use super::state::State;
 use crate::contact::{Bound, PointState};

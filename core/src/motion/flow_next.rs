@@ -2,7 +2,7 @@
 
 use super::flow::{Flow, Next};
 use super::modal_system::ContactState;
-use super::polynomial::{first_zero, DEGREE};
+use super::polynomial::{first_zero, reach_of, DEGREE};
 use super::power_series::sum_of_products;
 use super::sliding::Slide;
 use crate::contact::{Bound, PointState, SlipPlane};
@@ -230,16 +230,6 @@ impl Flow<'_> {
         rescale(a, share);
         first_zero(a).map(|x| x * share)
     }
-}
-
-/// Most that a polynomial can move away from its start over a length.
-pub(super) fn reach_of(a: &[f64], length: f64) -> f64 {
-    let (mut scale, mut reach) = (1.0, 0.0);
-    for a in &a[1..] {
-        scale *= length;
-        reach += a.abs() * scale;
-    }
-    reach
 }
 
 /// `Σ a_n (length x)ⁿ`.

@@ -119,6 +119,16 @@ impl Search<'_> {
     }
 }
 
+/// Most that a polynomial can move away from its start over a length.
+pub(super) fn reach_of(a: &[f64], length: f64) -> f64 {
+    let (mut scale, mut reach) = (1.0, 0.0);
+    for a in &a[1..] {
+        scale *= length;
+        reach += a.abs() * scale;
+    }
+    reach
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
