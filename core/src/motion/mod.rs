@@ -21,6 +21,7 @@ mod output;
 mod phase;
 mod polynomial;
 mod power_series;
+mod projection;
 mod returns;
 mod rigid;
 mod runge_kutta;

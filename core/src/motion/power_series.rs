@@ -45,6 +45,10 @@ pub struct PowerSeries {
     /// … the length of τ over which their forces hold, and the first ones to try: behind a reversal, and else.
     pub(super) window: f64,
     pub(super) tried: [f64; 2],
+    /// Displacements of one power; and which forces follow which displacements, with which factors, force
+    /// after force.
+    pub(super) displaced: Vec<f64>,
+    pub(super) springs: Vec<(usize, usize, f64)>,
 }
 
 impl PowerSeries {
@@ -64,6 +68,8 @@ impl PowerSeries {
             branches: Vec::new(),
             window: LONGEST,
             tried: [FRESH, LONGEST_MICROSLIP],
+            displaced: Vec::new(),
+            springs: Vec::new(),
         };
         series.set_rate(system, rate);
         series
