@@ -22,6 +22,7 @@ mod phase;
 mod polynomial;
 mod power_series;
 mod projection;
+mod propagator;
 mod returns;
 mod rigid;
 mod runge_kutta;
