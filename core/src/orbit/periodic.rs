@@ -13,7 +13,7 @@ use crate::balance::{
 use crate::contact::Residual;
 use crate::model::Model;
 use crate::motion::{ModalSystem, State};
-use crate::solve::{newton, NewtonSettings, Outcome, System as _};
+use crate::solve::{newton, norm, NewtonSettings, Outcome, System as _};
 use crate::timing::Profile;
 use crate::Error;
 use faer::c64;
@@ -21,6 +21,8 @@ use std::sync::Arc;
 
 /// Harmonics of the balance that a cold start comes from.
 const START_HARMONICS: usize = 9;
+/// Closing error, relative to the motion, of a start that needs no better one.
+const NEAR: f64 = 1e-4;
 /// Rounds of following the motion itself, and spans in the first: each round doubles them.
 const ROUNDS: usize = 9;
 const FIRST_SPANS: usize = 4;
@@ -288,7 +290,7 @@ impl<'a> PeriodicOrbits<'a> {
         let settings = self.newton();
         let mut iterations = 0;
         let mut y = match neighbour {
-            Some(state) => shooting.unknowns(state),
+            Some(state) => self.nearer_start(shooting, omega, shooting.unknowns(state)),
             None => shooting.unknowns(&self.harmonic_start(omega, 0.0)),
         };
         // Any other start has other sliders.
@@ -331,6 +333,27 @@ impl<'a> PeriodicOrbits<'a> {
             }
         }
         Some((y, iterations))
+    }
+
+    /// A start, or that of harmonic balance if it is better: where but one motion is possible, and each
+    /// further step of Newton's method is dear.
+    fn nearer_start(&self, shooting: &mut Shooting<'_>, omega: f64, y: Vec<f64>) -> Vec<f64> {
+        let misses = |shooting: &mut Shooting<'_>, y: &[f64]| {
+            let mut residual = vec![0.0; y.len()];
+            shooting.residual(y, &mut residual);
+            norm(&residual) / norm(y)
+        };
+        let own = misses(shooting, &y);
+        let near = own <= NEAR || shooting.price() < 1.0;
+        if near || !self.model.is_monotone() {
+            return y;
+        }
+        let other = shooting.unknowns(&self.harmonic_start(omega, 0.0));
+        if misses(shooting, &other) < own {
+            other
+        } else {
+            y
+        }
     }
 
     /// The state of a harmonic balance of low order at an angle of the period; rest where it

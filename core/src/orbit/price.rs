@@ -16,6 +16,8 @@ const PER_MODE: f64 = 10.0;
 const PASSES: f64 = 10.0;
 /// Products of matrices per transition between two events, beside the squarings.
 const PRODUCTS: f64 = 8.0;
+/// Operations of products of matrices in the time of one of the flow.
+const SPEED: f64 = 4.0;
 /// Operations of eigenvalues over the third power of the size.
 const EIGENVALUES: f64 = 25.0;
 /// Nodes of a quadrature per step, and operations per node and harmonic.
@@ -48,6 +50,17 @@ impl PeriodicOrbits<'_> {
     pub(super) fn steps_for(&self, operations: f64) -> usize {
         (operations / step_price(self.system())) as usize
     }
+}
+
+/// What a transition matrix over so many stretches costs, in passes along an orbit of so many steps.
+pub(super) fn matrix_price(
+    system: &ModalSystem,
+    size: usize,
+    stretches: usize,
+    steps: usize,
+) -> f64 {
+    let products = stretches as f64 * 2.0 * (size as f64).powi(3) * PRODUCTS / SPEED;
+    products / (steps as f64 * step_price(system)).max(1.0)
 }
 
 /// Operations of a step of the flow.
