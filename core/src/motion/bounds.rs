@@ -184,7 +184,7 @@ impl ModalSystem {
     }
 
     /// The points of the element that a point belongs to.
-    pub(super) fn together_with(&self, point: usize) -> Range<usize> {
+    pub(crate) fn together_with(&self, point: usize) -> Range<usize> {
         let bodies = self.bodies();
         let own = bodies.partition_point(|body| body.points.end <= point);
         bodies.get(own).map_or(0..0, |body| body.points.clone())
