@@ -45,6 +45,7 @@ pub fn exact_response<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let settings = OrbitSettings { harmonics, ..settings };
     let (model, own, observed) = (&problem.model, Arc::clone(&problem.model), observe.len());
+    let order = omega.clone();
     let found = keeping(
         py,
         progress,
@@ -57,7 +58,9 @@ pub fn exact_response<'py>(
             }
             Ok(found)
         },
-        |points| {
+        |mut points| {
+            // Pieces of the sweep come as they are found.
+            points.sort_by_key(|orbit| order.iter().position(|own| *own == orbit.response.omega));
             let half_wave = model.is_symmetric() && settings.residual.is_symmetric();
             let profile = Profile::default();
             (!points.is_empty()).then_some(Orbits { points, half_wave, interrupted: true, profile })

@@ -24,6 +24,7 @@ pub mod fourier;
 pub mod model;
 pub mod motion;
 pub mod orbit;
+mod parallel;
 pub mod solve;
 pub mod structure;
 pub mod timing;

@@ -65,7 +65,7 @@ pub use solution::{AmplitudeBounds, CurveEnd, Point, PointStatus, Solution, Uniq
 pub(crate) use statics::{slip_load, Level, Loading};
 pub use statics::{static_response, with_history, AtRest, RestStatus};
 pub use sweep::sweep;
-pub(crate) use sweep::{check_bracket, check_frequency, over_frequencies};
+pub(crate) use sweep::{check_bracket, check_frequencies, check_frequency, over_frequencies};
 pub use unknowns::Unknowns;
 
 /// Exact orbits that a balance may turn to.

@@ -56,9 +56,7 @@ pub(crate) fn over_frequencies<A, P>(
     report: impl Fn(&mut A, f64) -> bool,
     mut find: impl FnMut(&mut A, &[Arc<P>], f64) -> Result<Option<P>, Error>,
 ) -> Result<(Vec<Arc<P>>, bool), Error> {
-    for (index, &frequency) in omega.iter().enumerate() {
-        check_frequency(&format!("omega[{index}]"), frequency)?;
-    }
+    check_frequencies(omega)?;
     let mut points: Vec<Arc<P>> = Vec::new();
     for (index, &frequency) in omega.iter().enumerate() {
         if !report(analysis, index as f64 / omega.len() as f64) {
@@ -70,6 +68,12 @@ pub(crate) fn over_frequencies<A, P>(
         points.push(point);
     }
     Ok((points, false))
+}
+
+/// Checks all frequencies of a sweep.
+pub(crate) fn check_frequencies(omega: &[f64]) -> Result<(), Error> {
+    let check = |(index, &frequency)| check_frequency(&format!("omega[{index}]"), frequency);
+    omega.iter().enumerate().try_for_each(check)
 }
 
 pub(crate) fn check_frequency(entry: &str, omega: f64) -> Result<(), Error> {

@@ -3,6 +3,7 @@
 
 use super::modal_system::{dot, ContactState, ModalSystem};
 use crate::contact::{Bound, PointState, SlipPlane};
+use std::ops::Range;
 
 impl ModalSystem {
     /// Slip limit of a point under these forces, none where it is open \[N\].
@@ -180,6 +181,13 @@ impl ModalSystem {
             Bound::Friction { friction, normal } => [rate(point), friction * rate(normal)],
             _ => [rate(point), 0.0],
         }
+    }
+
+    /// The points of the element that a point belongs to.
+    pub(crate) fn together_with(&self, point: usize) -> Range<usize> {
+        let bodies = self.bodies();
+        let own = bodies.partition_point(|body| body.points.end <= point);
+        bodies.get(own).map_or(0..0, |body| body.points.clone())
     }
 
     /// Points whose slip limit follows the force of a point.

@@ -359,7 +359,7 @@ impl Trend {
 }
 
 /// Whether contacts and the symmetric part of the damping matrix take energy out of every motion.
-fn is_passive(model: &Model) -> bool {
+pub(crate) fn is_passive(model: &Model) -> bool {
     if !model.laws().iter().all(|law| law.is_monotone()) {
         return false;
     }

@@ -7,6 +7,7 @@ use super::microslip::Microslip;
 use super::modal_system::{dot, ContactState, ModalSystem};
 use super::polynomial::DEGREE;
 use super::power_series::{sum_of_products, PowerSeries, LONGEST_MICROSLIP};
+use super::projection::take_off;
 use super::sliding::{Slide, Swing};
 use super::state::State;
 
@@ -100,8 +101,9 @@ impl PowerSeries {
                 (*order as f64 * omega / rate, [cos, sin])
             })
             .collect();
+        self.connect(system, regime);
         for power in 0..=DEGREE {
-            self.expand_contacts(system, regime, power);
+            self.expand_contacts(system, power);
             for branch in self.branches.iter().filter(|_| power > 0) {
                 let at = branch.point * (DEGREE + 1) + power;
                 self.force[at] = branch.force(power, &self.contact);
@@ -141,8 +143,9 @@ impl PowerSeries {
         let moved = |point: usize| dot(system.contact_shape(point), displacement);
         let mut swings: Vec<Swing<'_>> =
             motion.slides.iter().map(|slide| Swing::new(slide, force, moved)).collect();
+        self.connect(system, regime);
         for power in 0..=DEGREE {
-            self.expand_contacts(system, regime, power);
+            self.expand_contacts(system, power);
             for (branch, begun) in motion.branches.iter().zip(begun) {
                 let at = branch.point * (DEGREE + 1) + power;
                 self.force[at] = branch.disturbed(power, &self.contact, *begun);
@@ -191,9 +194,7 @@ impl PowerSeries {
         for point in 0..system.points() {
             let f = self.force[point * (DEGREE + 1) + power];
             if f != 0.0 {
-                for (next, b) in next.iter_mut().zip(system.contact_shape(point)) {
-                    *next -= b * f;
-                }
+                take_off(system.contact_shape(point), f, next);
             }
         }
         let order = (power + 1) as f64;
@@ -217,22 +218,34 @@ impl PowerSeries {
         }
     }
 
+    /// Finds out which forces follow which displacements; all others stay as they are.
+    fn connect(&mut self, system: &ModalSystem, regime: &ContactState) {
+        self.springs.clear();
+        for body in system.bodies() {
+            for i in body.points.clone() {
+                let known = self.springs.len();
+                let own = body.points.clone().map(|j| (i, j, regime.tangent[(i, j)]));
+                self.springs.extend(own.filter(|(_, _, k)| *k != 0.0));
+                if self.springs.len() == known {
+                    self.force[i * (DEGREE + 1) + 1..(i + 1) * (DEGREE + 1)].fill(0.0);
+                }
+            }
+        }
+    }
+
     /// Coefficients of u and f at one power.
-    fn expand_contacts(&mut self, system: &ModalSystem, regime: &ContactState, power: usize) {
+    fn expand_contacts(&mut self, system: &ModalSystem, power: usize) {
         let modal = &self.modal[power * self.modes..(power + 1) * self.modes];
+        system.projection.displacements(modal, &mut self.displaced);
         for point in (0..system.points()).filter(|point| system.is_felt(*point)) {
-            self.contact[point * (DEGREE + 1) + power] = dot(system.contact_shape(point), modal);
+            self.contact[point * (DEGREE + 1) + power] = self.displaced[point];
         }
         if power == 0 {
             return;
         }
-        for body in system.bodies() {
-            for i in body.points.clone() {
-                let own = body.points.clone();
-                let parts =
-                    own.map(|j| (regime.tangent[(i, j)], self.contact[j * (DEGREE + 1) + power]));
-                self.force[i * (DEGREE + 1) + power] = sum_of_products(parts);
-            }
+        for own in self.springs.chunk_by(|one, next| one.0 == next.0) {
+            let parts = own.iter().map(|(_, j, k)| (*k, self.contact[j * (DEGREE + 1) + power]));
+            self.force[own[0].0 * (DEGREE + 1) + power] = sum_of_products(parts);
         }
     }
 }

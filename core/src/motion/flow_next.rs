@@ -156,7 +156,9 @@ impl Flow<'_> {
     fn fill_slip_velocity(&mut self, regime: &ContactState, point: usize, sign: f64, natural: f64) {
         self.scratch.clear();
         self.scratch.resize(DEGREE, 0.0);
-        let rates: Vec<(usize, f64)> = (0..self.system.points())
+        let rates: Vec<(usize, f64)> = self
+            .system
+            .together_with(point)
             .map(|other| (other, sign * regime.slip_rate[(point, other)]))
             .filter(|(_, rate)| *rate != 0.0)
             .collect();

@@ -116,6 +116,11 @@ impl LinearPhase {
         }
     }
 
+    /// Whether time passes in it, and disturbances follow linear equations of one kind.
+    pub(crate) fn is_linear(&self) -> bool {
+        self.slide.is_none() && self.duration > 0.0
+    }
+
     /// Whether a point slips in it.
     pub(crate) fn slips(&self, point: usize) -> bool {
         self.regime.points[point] != PointState::Stuck

@@ -21,6 +21,8 @@ mod output;
 mod phase;
 mod polynomial;
 mod power_series;
+mod projection;
+mod propagator;
 mod returns;
 mod rigid;
 mod runge_kutta;
@@ -30,6 +32,7 @@ mod transient;
 mod transition;
 
 pub use basin::fates;
+pub(crate) use classification::is_passive;
 pub use classification::{Classification, ClassificationSettings, Classifier, Reason};
 pub use flow::Flow;
 pub use flow_event::{Event, FlowEvent, FlowSegment, Halt};

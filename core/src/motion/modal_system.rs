@@ -3,6 +3,7 @@
 use super::bodies::{Bodies, Body};
 use super::damping::Damping;
 use super::microslip::Microslip;
+use super::projection::Projection;
 use crate::contact::{Bound, PointState, PointSummary, SlipPlane};
 use crate::model::Model;
 use crate::structure::{modes, ModalDamping, RealModes};
@@ -23,6 +24,8 @@ pub struct ModalSystem {
     to_modes: Mat<f64>,
     /// B Φ, element after element.
     pub(super) contacts: Vec<f64>,
+    /// The same for products.
+    pub(super) projection: Projection,
     /// The contact displacement of the model that each point of an element acts on.
     components: Vec<usize>,
     /// Φᵀ P_k per forced harmonic.
@@ -75,7 +78,8 @@ impl ModalSystem {
             .components
             .iter()
             .flat_map(|&i| (0..size).map(move |j| (i, j)))
-            .map(|at| rows[at]);
+            .map(|at| rows[at])
+            .collect::<Vec<f64>>();
         let loads = model.ports().loads.iter().map(|load| {
             let modal = (0..size)
                 .map(|j| (0..size).map(|i| load.amplitude[i] * modes.shapes[(i, j)]).sum())
@@ -83,7 +87,8 @@ impl ModalSystem {
             (load.harmonic, modal)
         });
         Ok(Self {
-            contacts: contacts.collect(),
+            projection: Projection::new(&contacts, size),
+            contacts,
             loads: loads.filter(|(_, load): &(_, Vec<c64>)| !is_zero(load)).collect(),
             rate: rate_of(model, &damping),
             damping: Damping::of(&damping),

@@ -211,6 +211,26 @@ impl Extremes {
         }
     }
 
+    /// Widens the range of each contact displacement.
+    pub(crate) fn follow_contacts(
+        &mut self,
+        system: &ModalSystem,
+        segment: &FlowSegment<'_>,
+        ranges: &mut [[f64; 2]],
+    ) {
+        for (point, range) in ranges.iter_mut().enumerate() {
+            if system.is_felt(point) {
+                self.series.clear();
+                self.series.extend_from_slice(segment.series.contact(point));
+                rescale(&mut self.series, segment.length);
+            } else {
+                let shape = system.contact_shape(point).iter().copied();
+                segment.series.project(shape, segment.length, &mut self.series);
+            }
+            self.widen(range);
+        }
+    }
+
     /// Least `M² − |t|²` of a contact in a plane on a stretch of the motion, relative to the greatest M².
     pub(crate) fn least_room(
         &mut self,

@@ -9,6 +9,7 @@ use super::modal_system::{dot, ModalSystem};
 use super::polynomial::{self, DEGREE, TRUNCATION};
 use super::sliding::Slide;
 use crate::contact::{Bound, SlipPlane};
+use faer::{Mat, MatRef};
 
 /// Longest step in units of the fastest rate: beyond it rounding errors of fast modes would grow.
 const LONGEST: f64 = 12.0;
@@ -45,6 +46,19 @@ pub struct PowerSeries {
     /// … the length of τ over which their forces hold, and the first ones to try: behind a reversal, and else.
     pub(super) window: f64,
     pub(super) tried: [f64; 2],
+    /// Displacements of one power; and which forces follow which displacements, with which factors, force
+    /// after force.
+    pub(super) displaced: Vec<f64>,
+    pub(super) springs: Vec<(usize, usize, f64)>,
+}
+
+/// A motion at many instants, one column each: modal displacements and velocities, contact velocities and
+/// contact forces.
+pub(crate) struct Values {
+    pub(crate) displacement: Mat<f64>,
+    pub(crate) velocity: Mat<f64>,
+    pub(crate) speed: Mat<f64>,
+    pub(crate) force: Mat<f64>,
 }
 
 impl PowerSeries {
@@ -64,6 +78,8 @@ impl PowerSeries {
             branches: Vec::new(),
             window: LONGEST,
             tried: [FRESH, LONGEST_MICROSLIP],
+            displaced: Vec::new(),
+            springs: Vec::new(),
         };
         series.set_rate(system, rate);
         series
@@ -165,6 +181,30 @@ impl PowerSeries {
             }
         }
         velocity.iter_mut().for_each(|v| *v *= self.rate);
+    }
+
+    /// The motion at many instants τ.
+    pub(crate) fn values(&self, instants: impl ExactSizeIterator<Item = f64>) -> Values {
+        let mut powers = Mat::<f64>::zeros(DEGREE + 1, instants.len());
+        let mut slopes = Mat::<f64>::zeros(DEGREE + 1, instants.len());
+        for (j, tau) in instants.enumerate() {
+            let (power, slope) = (powers.col_as_slice_mut(j), slopes.col_as_slice_mut(j));
+            power[0] = 1.0;
+            for n in 1..=DEGREE {
+                power[n] = tau * power[n - 1];
+                slope[n] = self.rate * n as f64 * power[n - 1];
+            }
+        }
+        let points = self.force.len() / (DEGREE + 1);
+        let modal = MatRef::from_column_major_slice(&self.modal, self.modes, DEGREE + 1);
+        let [contact, force] = [&self.contact, &self.force]
+            .map(|all| MatRef::from_column_major_slice(all, DEGREE + 1, points).transpose());
+        Values {
+            displacement: modal * &powers,
+            velocity: modal * &slopes,
+            speed: contact * &slopes,
+            force: force * &powers,
+        }
     }
 
     /// Coefficients of the force of a contact point.

@@ -11,7 +11,6 @@
 //! the motion itself. At the onset the traction loses what is along it but the change of its limit.
 
 use super::bodies::Body;
-use super::exponential::exponential;
 use super::linear_phase::{LinearPhase, Onset};
 use super::loop_disturbance::LoopDisturbance;
 use super::modal_system::{ContactState, ModalSystem};
@@ -24,9 +23,9 @@ use faer::Mat;
 /// (`f = L g`, of a single spring `f/√k`), in whose norm passive systems contract: kinetic and
 /// elastic energy.
 pub(crate) struct Transition<'a> {
-    system: &'a ModalSystem,
+    pub(super) system: &'a ModalSystem,
     /// w per mode [rad/s].
-    weight: Vec<f64>,
+    pub(super) weight: Vec<f64>,
 }
 
 impl<'a> Transition<'a> {
@@ -141,7 +140,7 @@ impl<'a> Transition<'a> {
             if let Some((series, length)) = &phase.slide {
                 self.slide(&phase.regime, series, *length, &mut total, loops);
             } else if phase.duration > 0.0 {
-                total = self.exponential(&phase.regime, phase.duration) * total;
+                self.advance(&phase.regime, phase.duration, &mut total);
             }
             if let Some(onset) = &phase.onset {
                 self.jump(onset, &mut total);
@@ -306,50 +305,5 @@ impl<'a> Transition<'a> {
                 }
             }
         }
-    }
-
-    /// Exponential of the linear equations over a duration \[s\], by scaling and squaring.
-    fn exponential(&self, regime: &ContactState, duration: f64) -> Mat<f64> {
-        let (size, modes) = (self.size(), self.weight.len());
-        let mut a = Mat::<f64>::zeros(size, size);
-        for j in 0..modes {
-            a[(j, modes + j)] = duration * self.weight[j];
-            a[(modes + j, j)] = -duration * self.system.omega_squared()[j] / self.weight[j];
-        }
-        for j in 0..modes {
-            for i in 0..modes {
-                a[(modes + i, modes + j)] = -duration * self.system.damping.entry(i, j);
-            }
-        }
-        for &point in &self.system.normals {
-            let slope = duration * regime.tangent[(point, point)];
-            let shape = self.system.contact_shape(point);
-            for (j, b) in shape.iter().enumerate().filter(|_| slope != 0.0) {
-                for (i, own) in shape.iter().enumerate() {
-                    a[(modes + i, j)] -= own * slope * b / self.weight[j];
-                }
-            }
-        }
-        for body in self.system.bodies() {
-            for i in body.points.clone() {
-                let row = i - body.points.start;
-                for (own, strain) in body.strains.clone().enumerate() {
-                    let root = duration * body.elastic.root()[(row, own)];
-                    for (j, b) in self.system.contact_shape(i).iter().enumerate() {
-                        a[(modes + j, 2 * modes + strain)] -= b * root;
-                    }
-                }
-                // g' = L⁺ T u', with column i of T.
-                let column: Vec<f64> =
-                    body.points.clone().map(|r| duration * regime.tangent[(r, i)]).collect();
-                let rates = body.elastic.strains(&column);
-                for (strain, rate) in body.strains.clone().zip(rates) {
-                    for (j, b) in self.system.contact_shape(i).iter().enumerate() {
-                        a[(2 * modes + strain, modes + j)] += rate * b;
-                    }
-                }
-            }
-        }
-        exponential(&a)
     }
 }

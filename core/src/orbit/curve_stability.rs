@@ -6,6 +6,7 @@ use crate::balance::{
 };
 use crate::contact::Residual;
 use crate::model::Model;
+use crate::parallel::in_parts;
 use crate::Error;
 use std::sync::Arc;
 
@@ -18,7 +19,7 @@ const SENSITIVITY: f64 = 30.0;
 ///
 /// Where the harmonics left out could take the largest multiplier to the other side of 1, the point is
 /// solved with about twice as many: it is decided if they change the multiplier by less than its distance
-/// from 1.
+/// from 1. Points are judged at the same time, each by itself.
 ///
 /// # Errors
 /// As [`PeriodMap::new`], but for a wave.
@@ -37,14 +38,10 @@ pub fn decide_stability(
         Residual::Centred | Residual::Value(_) => None,
     };
     let map = PeriodMap::new(history.as_ref().unwrap_or(model))?.assuming(residual);
-    for point in &mut solution.points {
-        if !progress(1.0) {
-            return Ok(());
-        }
-        if !point.is_solved() {
-            continue;
-        }
-        let Some(found) = along(&map, point) else { continue };
+    let points = &solution.points;
+    let found = in_parts(points.len(), progress, |index, progress| {
+        let point = points.get(index).filter(|point| point.is_solved() && progress(0.0))?;
+        let found = along(&map, point)?;
         let away = (found.largest() - 1.0).abs();
         let stable = if away > SENSITIVITY * relative_error(point) {
             found.stable()
@@ -52,7 +49,12 @@ pub fn decide_stability(
             let finer = with_more_harmonics(model, settings, point, progress);
             finer.and_then(|finer| decided(&found, &along(&map, &finer)?))
         };
-        Arc::make_mut(point).stable = stable;
+        Some(stable)
+    });
+    for (point, stable) in solution.points.iter_mut().zip(found) {
+        if let Some(stable) = stable {
+            Arc::make_mut(point).stable = stable;
+        }
     }
     Ok(())
 }

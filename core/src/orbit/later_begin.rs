@@ -12,7 +12,7 @@ const BEGINS: [f64; 3] = [0.5, 0.25, 0.75];
 impl PeriodicOrbits<'_> {
     /// Whether a span may begin later, and is another one then.
     pub(super) fn begins_later(&self) -> bool {
-        !self.system().microslips().is_empty() && self.rotation.is_none()
+        !self.system().microslips().is_empty() && self.plan.rotation.is_none()
     }
 
     /// By Newton's method from harmonic balance over spans that begin later: unknowns at the time 0.

@@ -16,6 +16,7 @@ mod multipliers;
 mod orbit_postprocess;
 mod period_map;
 mod periodic;
+mod plan;
 mod price;
 mod quadrature;
 mod remembered_turns;

@@ -1,19 +1,18 @@
 //! The exact periodic orbit at one frequency.
 
 use super::closed::{left_error, Orbit};
+use super::plan::Plan;
 use super::quadrature::Quadrature;
 use super::rotation::Rotation;
 use super::settings::OrbitSettings;
-use super::shooting::{Shooting, STEPS};
+use super::shooting::Shooting;
 use super::sliders::{choose, Assumption, Chosen};
 use super::start::{later, start_of};
-use crate::balance::{
-    with_history, ForcedBalance, HarmonicChoice, Kept, Point, PointStatus, Progress, Settings,
-};
+use crate::balance::{ForcedBalance, HarmonicChoice, Kept, Point, PointStatus, Progress, Settings};
 use crate::contact::Residual;
 use crate::model::Model;
 use crate::motion::{ModalSystem, State};
-use crate::solve::{newton, NewtonSettings, Outcome, System as _};
+use crate::solve::{newton, norm, NewtonSettings, Outcome, System as _};
 use crate::timing::Profile;
 use crate::Error;
 use faer::c64;
@@ -21,6 +20,8 @@ use std::sync::Arc;
 
 /// Harmonics of the balance that a cold start comes from.
 const START_HARMONICS: usize = 9;
+/// Closing error, relative to the motion, of a start that needs no better one.
+const NEAR: f64 = 1e-4;
 /// Rounds of following the motion itself, and spans in the first: each round doubles them.
 const ROUNDS: usize = 9;
 const FIRST_SPANS: usize = 4;
@@ -37,25 +38,32 @@ const ROUNDING: f64 = 1e-8;
 
 /// Exact orbits of a model, from frequency to frequency.
 pub struct PeriodicOrbits<'a> {
-    model: &'a Model,
-    /// The model with friction that has its history, where it is asked for.
-    with_history: Option<Model>,
-    system: Arc<ModalSystem>,
-    settings: OrbitSettings,
+    pub(super) plan: Plan<'a>,
     /// By how much sliders are displaced, see [`Assumption`].
-    sliders: Vec<f64>,
-    observe: &'a [usize],
-    everywhere: Vec<usize>,
-    half_wave: bool,
-    pub(super) rotation: Option<Rotation>,
-    quadrature: Quadrature,
-    progress: &'a Progress<'a>,
+    pub(super) sliders: Vec<f64>,
+    pub(super) everywhere: Vec<usize>,
+    pub(super) quadrature: Quadrature,
+    pub(super) progress: &'a Progress<'a>,
     pub(super) kept: Option<&'a Kept<Orbit>>,
-    share: f64,
-    /// Steps of the flow that an orbit is granted.
-    granted: usize,
+    pub(super) share: f64,
     /// Steps of the flow, transition matrices and time.
     pub(crate) profile: Profile,
+}
+
+impl<'a> Plan<'a> {
+    /// Orbits that tell `progress` how far they are.
+    pub(super) fn orbits(self, progress: &'a Progress<'a>) -> PeriodicOrbits<'a> {
+        PeriodicOrbits {
+            everywhere: (0..self.system.modes()).collect(),
+            plan: self,
+            sliders: Vec::new(),
+            quadrature: Quadrature::default(),
+            progress,
+            kept: None,
+            share: 0.0,
+            profile: Profile::default(),
+        }
+    }
 }
 
 impl<'a> PeriodicOrbits<'a> {
@@ -68,45 +76,18 @@ impl<'a> PeriodicOrbits<'a> {
         settings: OrbitSettings,
         observe: &'a [usize],
     ) -> Result<Self, Error> {
-        settings.check()?;
-        let with_history = match settings.residual {
-            Residual::FromRest => with_history(model)?,
-            Residual::Centred | Residual::Value(_) => None,
-        };
-        let system = Arc::new(ModalSystem::new(with_history.as_ref().unwrap_or(model))?);
-        Error::check_dofs(observe, system.modes())?;
-        Ok(Self {
-            model,
-            with_history,
-            everywhere: (0..system.modes()).collect(),
-            system,
-            settings,
-            sliders: Vec::new(),
-            observe,
-            half_wave: model.is_symmetric() && settings.residual.is_symmetric(),
-            rotation: None,
-            quadrature: Quadrature::default(),
-            progress: &|_| true,
-            kept: None,
-            share: 0.0,
-            granted: STEPS,
-            profile: Profile::default(),
-        })
+        Ok(Plan::new(model, settings, observe)?.orbits(&|_| true))
     }
 
     /// Grants an orbit fewer steps of the flow.
     #[must_use]
     pub(super) fn granted(mut self, steps: usize) -> Self {
-        self.granted = self.granted.min(steps);
+        self.plan.granted = self.plan.granted.min(steps);
         self
     }
 
-    pub(super) fn model(&self) -> &Model {
-        self.model
-    }
-
     pub(super) fn system(&self) -> &ModalSystem {
-        &self.system
+        &self.plan.system
     }
 
     /// Seeks orbits of a symmetry in space and time; their multipliers stay unknown, as what breaks
@@ -116,9 +97,9 @@ impl<'a> PeriodicOrbits<'a> {
     /// The model has no such symmetry.
     pub fn rotating(mut self, rotation: Option<Rotation>) -> Result<Self, Error> {
         if let Some(rotation) = &rotation {
-            rotation.check(&self.system)?;
+            rotation.check(&self.plan.system)?;
         }
-        self.rotation = rotation;
+        self.plan.rotation = rotation;
         Ok(self)
     }
 
@@ -144,21 +125,21 @@ impl<'a> PeriodicOrbits<'a> {
 
     /// Changes how many harmonics are reported.
     pub(super) fn report_up_to(&mut self, highest: usize) {
-        self.settings.harmonics = highest;
+        self.plan.settings.harmonics = highest;
     }
 
     /// Whether orbits are half-wave symmetric.
     #[must_use]
     pub fn half_wave(&self) -> bool {
-        self.half_wave
+        self.plan.half_wave
     }
 
     /// A point that has not been computed.
     pub(super) fn empty(&self, omega: f64, status: PointStatus) -> Orbit {
-        let observed = self.observe.len();
-        let size = 2 * self.system.modes() + self.system.memories();
+        let observed = self.plan.observe.len();
+        let size = 2 * self.plan.system.modes() + self.plan.system.memories();
         Orbit {
-            response: Point::empty(omega, status, observed, self.system.displacements()),
+            response: Point::empty(omega, status, observed, self.plan.system.displacements()),
             range: vec![[f64::NAN; 2]; observed],
             state: vec![f64::NAN; size],
             multipliers: vec![c64::new(f64::NAN, f64::NAN); size],
@@ -175,19 +156,19 @@ impl<'a> PeriodicOrbits<'a> {
     /// # Errors
     /// The eigenvalues of a transition matrix cannot be found; a DOF that has hardly any mass.
     pub fn solve(&mut self, omega: f64, neighbour: Option<&State>) -> Result<Orbit, Error> {
-        self.system.check_pace(self.model, omega, FASTEST)?;
+        self.plan.system.check_pace(self.plan.model, omega, FASTEST)?;
         let (progress, share) = (self.progress, self.share);
         let interrupted = || !progress(share);
-        let system = Arc::clone(&self.system);
-        let mut shooting = Shooting::new(&system, omega, self.half_wave, Some(&interrupted));
-        shooting.grant(self.granted);
-        shooting.assume(self.settings.residual);
-        if let Some(rotation) = self.rotation {
+        let system = Arc::clone(&self.plan.system);
+        let mut shooting = Shooting::new(&system, omega, self.plan.half_wave, Some(&interrupted));
+        shooting.grant(self.plan.granted);
+        shooting.assume(self.plan.settings.residual);
+        if let Some(rotation) = self.plan.rotation {
             shooting.rotate(rotation, &system);
         }
         let solved = self.shoot(&mut shooting, omega, neighbour);
         let solved = solved.map(|(mut y, mut iterations)| {
-            let (residual, newton) = (self.settings.residual, self.newton());
+            let (residual, newton) = (self.plan.settings.residual, self.newton());
             let assumption = Assumption { residual, sliders: &self.sliders };
             let chosen = choose(&mut shooting, assumption, &mut y, newton, &mut iterations);
             (y, iterations, chosen)
@@ -219,7 +200,7 @@ impl<'a> PeriodicOrbits<'a> {
             return Ok(self.empty(omega, status));
         }
         let known =
-            match self.rotation {
+            match self.plan.rotation {
                 Some(_) => None,
                 None => Some(shooting.multipliers().ok_or_else(|| {
                     Error::Eigenvalues("transition matrix of the orbit".to_owned())
@@ -228,13 +209,13 @@ impl<'a> PeriodicOrbits<'a> {
         self.profile.factorisations += shooting.matrices;
         let start = std::time::Instant::now();
         let empty = self.empty(omega, PointStatus::Converged);
-        let (settings, quadrature) = (&self.settings, &mut self.quadrature);
+        let (settings, quadrature) = (&self.plan.settings, &mut self.quadrature);
         let (mut orbit, touches) =
-            empty.read(&mut shooting, &y, settings, self.observe, quadrature);
+            empty.read(&mut shooting, &y, settings, self.plan.observe, quadrature);
         self.profile.recovery += start.elapsed();
         orbit.response.residual = closing;
         orbit.response.iterations = iterations;
-        orbit.response.error_estimate = left_error(&shooting, self.observe, &left);
+        orbit.response.error_estimate = left_error(&shooting, self.plan.observe, &left);
         if let Some((multipliers, neutral)) = known {
             orbit.neutral = neutral;
             // Where a limit is touched they are those of disturbances away from it: what grows there
@@ -258,23 +239,23 @@ impl<'a> PeriodicOrbits<'a> {
         start: &Point,
         sliders: Vec<f64>,
     ) -> Result<Orbit, Error> {
-        let residual = std::mem::replace(&mut self.settings.residual, Residual::FromRest);
+        let residual = std::mem::replace(&mut self.plan.settings.residual, Residual::FromRest);
         self.sliders = sliders;
-        let model = self.with_history.as_ref().unwrap_or(self.model);
-        let state = start_of(model, &self.system, Residual::FromRest, start, false);
+        let model = self.plan.with_history.as_deref().unwrap_or(self.plan.model);
+        let state = start_of(model, &self.plan.system, Residual::FromRest, start, false);
         let orbit = self.solve(start.omega, Some(&state));
-        self.settings.residual = residual;
+        self.plan.settings.residual = residual;
         self.sliders = Vec::new();
         orbit
     }
 
     /// Whether an orbit depends on the sliders that it leaves where they are.
     pub(crate) fn depends_on_sliders(&self) -> bool {
-        self.system.has_normals() && !self.half_wave
+        self.plan.system.has_normals() && !self.plan.half_wave
     }
 
     pub(super) fn newton(&self) -> NewtonSettings {
-        NewtonSettings { tolerance: 1e-13, max_iterations: self.settings.max_iterations }
+        NewtonSettings { tolerance: 1e-13, max_iterations: self.plan.settings.max_iterations }
     }
 
     /// Newton's method from the neighbour, from harmonic balance, and at last from where the
@@ -288,7 +269,7 @@ impl<'a> PeriodicOrbits<'a> {
         let settings = self.newton();
         let mut iterations = 0;
         let mut y = match neighbour {
-            Some(state) => shooting.unknowns(state),
+            Some(state) => self.nearer_start(shooting, omega, shooting.unknowns(state)),
             None => shooting.unknowns(&self.harmonic_start(omega, 0.0)),
         };
         // Any other start has other sliders.
@@ -315,7 +296,7 @@ impl<'a> PeriodicOrbits<'a> {
                         if shooting.interrupted() {
                             return None;
                         }
-                        y = shooting.unknowns(&State::rest(&self.system));
+                        y = shooting.unknowns(&State::rest(&self.plan.system));
                     }
                 }
             }
@@ -333,27 +314,49 @@ impl<'a> PeriodicOrbits<'a> {
         Some((y, iterations))
     }
 
+    /// A start, or that of harmonic balance if it is better: where but one motion is possible, and each
+    /// further step of Newton's method is dear.
+    fn nearer_start(&self, shooting: &mut Shooting<'_>, omega: f64, y: Vec<f64>) -> Vec<f64> {
+        let misses = |shooting: &mut Shooting<'_>, y: &[f64]| {
+            let mut residual = vec![0.0; y.len()];
+            shooting.residual(y, &mut residual);
+            norm(&residual) / norm(y)
+        };
+        let own = misses(shooting, &y);
+        let near = own <= NEAR || shooting.price() < 1.0;
+        if near || !self.plan.unique {
+            return y;
+        }
+        let other = shooting.unknowns(&self.harmonic_start(omega, 0.0));
+        if misses(shooting, &other) < own {
+            other
+        } else {
+            y
+        }
+    }
+
     /// The state of a harmonic balance of low order at an angle of the period; rest where it
     /// has none.
     pub(super) fn harmonic_start(&self, omega: f64, angle: f64) -> State {
-        let rest = State::rest(&self.system);
-        let forced = self.model.compliance().forced_harmonics();
+        let rest = State::rest(&self.plan.system);
+        let forced = self.plan.model.compliance().forced_harmonics();
         let highest = forced.last().copied().unwrap_or(1).max(START_HARMONICS);
         let settings = Settings {
             harmonics: HarmonicChoice::Fixed(highest),
             max_harmonics: highest,
-            residual: self.settings.residual,
+            residual: self.plan.settings.residual,
             ..Settings::default()
         };
-        let Ok(mut balance) = ForcedBalance::new(self.model, settings, &self.everywhere) else {
+        let Ok(mut balance) = ForcedBalance::new(self.plan.model, settings, &self.everywhere)
+        else {
             return rest;
         };
         balance = balance.watched(self.progress);
         match balance.solve(omega, None) {
             Ok(point) if point.status == PointStatus::Converged => start_of(
-                self.with_history.as_ref().unwrap_or(self.model),
-                &self.system,
-                self.settings.residual,
+                self.plan.with_history.as_deref().unwrap_or(self.plan.model),
+                &self.plan.system,
+                self.plan.settings.residual,
                 &later(&point, angle),
                 balance.half_wave(),
             ),

@@ -3,7 +3,6 @@
 //! The price follows from the model, the frequency and the number of events that a balance expects,
 //! not from the clock: the same point is solved in the same way everywhere.
 
-use super::periodic::PeriodicOrbits;
 use crate::motion::ModalSystem;
 use std::f64::consts::TAU;
 
@@ -16,38 +15,52 @@ const PER_MODE: f64 = 10.0;
 const PASSES: f64 = 10.0;
 /// Products of matrices per transition between two events, beside the squarings.
 const PRODUCTS: f64 = 8.0;
+/// Operations of products of matrices in the time of one of the flow.
+const SPEED: f64 = 4.0;
 /// Operations of eigenvalues over the third power of the size.
 const EIGENVALUES: f64 = 25.0;
 /// Nodes of a quadrature per step, and operations per node and harmonic.
 const NODES: f64 = 20.0;
 const PER_HARMONIC: f64 = 2.0;
 
-impl PeriodicOrbits<'_> {
-    /// Operations of a cold orbit at `omega` [rad/s] with `events` changes of contact states per
-    /// period, whose harmonics are reported up to `highest`; `None` if its motion is too fast to be
-    /// followed.
-    pub(super) fn price(&self, omega: f64, events: usize, highest: usize) -> Option<f64> {
-        let system = self.system();
-        system.check_pace(self.model(), omega, super::periodic::FASTEST).ok()?;
-        let share = if self.half_wave() { 0.5 } else { 1.0 };
-        let turn = share * TAU * system.rate(omega) / omega;
-        let events = share * events as f64;
-        let steps = turn / REACH + events;
-        let size = (2 * system.modes() + system.strains()) as f64;
-        let cube = size.powi(3);
-        let squarings = (turn / (events + 1.0)).log2().max(0.0);
-        let transition = (events + 1.0) * 2.0 * cube * (PRODUCTS + squarings);
-        let nodes = NODES * steps + share * TAU * highest as f64;
-        let rows = (system.modes() + system.points()) as f64;
-        let survey = nodes * rows * PER_HARMONIC * share * highest as f64;
-        let pass = steps * step_price(system) + transition + cube;
-        Some(PASSES * pass + EIGENVALUES * cube + survey)
-    }
+/// Operations of a cold orbit at `omega` [rad/s] with `events` changes of contact states per period, whose
+/// harmonics are reported up to `highest`.
+pub(super) fn orbit_price(
+    system: &ModalSystem,
+    half_wave: bool,
+    omega: f64,
+    events: usize,
+    highest: usize,
+) -> f64 {
+    let share = if half_wave { 0.5 } else { 1.0 };
+    let turn = share * TAU * system.rate(omega) / omega;
+    let events = share * events as f64;
+    let steps = turn / REACH + events;
+    let size = (2 * system.modes() + system.strains()) as f64;
+    let cube = size.powi(3);
+    let squarings = (turn / (events + 1.0)).log2().max(0.0);
+    let transition = (events + 1.0) * 2.0 * cube * (PRODUCTS + squarings);
+    let nodes = NODES * steps + share * TAU * highest as f64;
+    let rows = (system.modes() + system.points()) as f64;
+    let survey = nodes * rows * PER_HARMONIC * share * highest as f64;
+    let pass = steps * step_price(system) + transition + cube;
+    PASSES * pass + EIGENVALUES * cube + survey
+}
 
-    /// Steps of the flow that `operations` pay for.
-    pub(super) fn steps_for(&self, operations: f64) -> usize {
-        (operations / step_price(self.system())) as usize
-    }
+/// Steps of the flow that `operations` pay for.
+pub(super) fn steps_for(system: &ModalSystem, operations: f64) -> usize {
+    (operations / step_price(system)) as usize
+}
+
+/// What a transition matrix over so many stretches costs, in passes along an orbit of so many steps.
+pub(super) fn matrix_price(
+    system: &ModalSystem,
+    size: usize,
+    stretches: usize,
+    steps: usize,
+) -> f64 {
+    let products = stretches as f64 * 2.0 * (size as f64).powi(3) * PRODUCTS / SPEED;
+    products / (steps as f64 * step_price(system)).max(1.0)
 }
 
 /// Operations of a step of the flow.

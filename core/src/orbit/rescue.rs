@@ -1,7 +1,8 @@
 //! Exact orbits for a harmonic balance: a start where Newton's method fails, and the answer where
 //! more harmonics would cost more. A passive system always has one.
 
-use super::periodic::PeriodicOrbits;
+use super::periodic::{PeriodicOrbits, FASTEST};
+use super::price::{orbit_price, steps_for};
 use super::settings::OrbitSettings;
 use crate::balance::{ExactOrbits, Point, PointStatus, Progress};
 use crate::contact::Residual;
@@ -49,7 +50,7 @@ impl<'a> OrbitInitialGuess<'a> {
         let orbits = prepared.get_or_insert_with(|| {
             let settings = OrbitSettings { residual: self.residual, ..OrbitSettings::default() };
             let orbits = PeriodicOrbits::new(self.model, settings, self.observe).ok()?;
-            let steps = orbits.steps_for(PATIENCE);
+            let steps = steps_for(orbits.system(), PATIENCE);
             Some(orbits.watched(self.progress).granted(steps))
         });
         work(orbits.as_mut()?)
@@ -68,6 +69,10 @@ impl ExactOrbits for OrbitInitialGuess<'_> {
     }
 
     fn price(&self, omega: f64, events: usize, highest: usize) -> Option<f64> {
-        self.with(|orbits| orbits.price(omega, events, highest))
+        self.with(|orbits| {
+            let system = orbits.system();
+            system.check_pace(self.model, omega, FASTEST).ok()?;
+            Some(orbit_price(system, orbits.half_wave(), omega, events, highest))
+        })
     }
 }

@@ -2,6 +2,7 @@
 //! after half a period.
 
 use super::loop_memory::LoopMemory;
+use super::price::matrix_price;
 use super::rotation::Rotation;
 use crate::contact::{PointState, Residual};
 use crate::motion::{Flow, FlowEvent, LinearPhase, ModalSystem, State, Transition};
@@ -41,11 +42,17 @@ pub(super) struct Shooting<'a> {
     /// The forces at the start.
     begun: Vec<f64>,
     pub(super) slipped: Vec<bool>,
+    /// Steps of the flow that it took.
+    steps: usize,
     /// What contacts without sliders remember.
     memory: LoopMemory,
     /// State after the span.
     pub(super) end: Option<State>,
+    /// Derivative of the image, and whether it is that of an evaluation before the last one.
     derivative: Option<Mat<f64>>,
+    earlier: bool,
+    /// Unknowns, image and points that have slipped of the last evaluation.
+    last: Option<(Vec<f64>, Vec<f64>, Vec<bool>)>,
     /// Transition matrices assembled so far.
     pub(super) matrices: usize,
 }
@@ -91,9 +98,12 @@ impl<'a> Shooting<'a> {
             held: Vec::new(),
             begun: Vec::new(),
             slipped: Vec::new(),
+            steps: 0,
             memory: LoopMemory::new(system, half_wave),
             end: None,
             derivative: None,
+            earlier: false,
+            last: None,
             matrices: 0,
         }
     }
@@ -101,6 +111,7 @@ impl<'a> Shooting<'a> {
     /// Has contacts without sliders keep what a residual traction says.
     pub(super) fn assume(&mut self, residual: Residual) {
         self.memory.assume(residual);
+        self.last = None;
     }
 
     /// The unknowns of a state: its coordinates, and behind them what contacts without sliders remember.
@@ -120,6 +131,7 @@ impl<'a> Shooting<'a> {
     /// Has the span begin a share of it later.
     pub(super) fn begin_later(&mut self, share: f64) {
         self.begin = share * self.span;
+        self.last = None;
     }
 
     /// The unknowns of an orbit that is closed, with its span beginning at 0 again.
@@ -130,6 +142,7 @@ impl<'a> Shooting<'a> {
             y.iter_mut().for_each(|y| *y = -*y);
         }
         self.begin = 0.0;
+        self.last = None;
         // What is remembered is that of the period before.
         self.image(&y)
     }
@@ -143,6 +156,7 @@ impl<'a> Shooting<'a> {
     pub(super) fn rotate(&mut self, rotation: Rotation, system: &ModalSystem) {
         self.span = self.period / rotation.parts as f64;
         self.memory.rotate(&rotation);
+        self.last = None;
         self.rotation = Some((rotation, rotation.matrix(&self.coordinates, system)));
     }
 
@@ -153,6 +167,7 @@ impl<'a> Shooting<'a> {
         self.span = whole / count as f64;
         self.half_wave = self.symmetric && number + 1 == count;
         self.memory.narrow(number, count);
+        self.last = None;
     }
 
     /// Completes what contacts without sliders remember behind segments that have all been followed, in
@@ -194,19 +209,28 @@ impl<'a> Shooting<'a> {
 
     /// Coordinates after the span, mirrored under half-wave symmetry.
     pub(super) fn image(&mut self, y: &[f64]) -> Option<Vec<f64>> {
+        if let Some((_, image, slipped)) = self.last.as_ref().filter(|(last, ..)| last == y) {
+            self.slipped.clone_from(slipped);
+            if std::mem::take(&mut self.earlier) {
+                self.derivative = None;
+            }
+            return Some(image.clone());
+        }
         let (mut state, held) = self.coordinates.state(y);
         let (size, system) = (self.coordinates.size(), self.coordinates.system());
         self.memory.begin(&mut state, system, &y[size..]);
         self.held = held;
         self.begun.clone_from(&state.force);
         self.phases.clear();
-        self.derivative = None;
+        (self.derivative, self.earlier, self.last) = (None, false, None);
         let (phases, memory) = (&mut self.phases, &mut self.memory);
         state.time = self.begin;
+        let before = self.flow.steps;
         let run = self.flow.run(&mut state, self.begin + self.span, &mut |passage| {
             LinearPhase::record(phases, system, &passage);
             memory.follow(&passage);
         });
+        self.steps = self.flow.steps - before;
         self.slipped = (0..self.limits.len())
             .map(|i| {
                 self.held[i] != PointState::Stuck || self.phases.iter().any(|phase| phase.slips(i))
@@ -227,6 +251,7 @@ impl<'a> Shooting<'a> {
         if self.rotation.is_none() && self.half_wave {
             image.iter_mut().for_each(|y| *y = -*y);
         }
+        self.last = Some((y.to_vec(), image.clone(), self.slipped.clone()));
         Some(image)
     }
 
@@ -316,7 +341,13 @@ impl System for Shooting<'_> {
     fn value(&mut self, x: &[f64], out: &mut [f64]) {
         let (derivative, slipped) = (self.derivative(), std::mem::take(&mut self.slipped));
         self.residual(x, out);
-        (self.derivative, self.slipped) = (Some(derivative), slipped);
+        (self.derivative, self.slipped, self.earlier) = (Some(derivative), slipped, true);
+    }
+
+    fn price(&self) -> f64 {
+        let stretches = self.phases.iter().filter(|phase| phase.is_linear()).count();
+        let (size, system) = (self.coordinates.size(), self.coordinates.system());
+        matrix_price(system, size, stretches, self.steps)
     }
 
     fn interrupted(&self) -> bool {

@@ -4,7 +4,7 @@ use super::quadrature::Quadrature;
 use crate::balance::Point;
 use crate::contact::{PointState, PointSummary};
 use crate::motion::{ContactState, Event, Extremes, FlowEvent, FlowSegment, ModalSystem, Turn};
-use faer::c64;
+use faer::{c64, Mat};
 use std::f64::consts::TAU;
 
 /// Quadrature nodes per segment beyond those that the highest harmonic needs: power series of an segment
@@ -74,7 +74,10 @@ impl<'a> Survey<'a> {
         match passage {
             FlowEvent::Segment(segment) => {
                 self.integrate(segment);
-                self.extremes.follow(segment, &self.shapes, &mut self.range);
+                let observed = self.shapes.len() - self.system.points();
+                let (dofs, contacts) = self.range.split_at_mut(observed);
+                self.extremes.follow(segment, &self.shapes[..observed], dofs);
+                self.extremes.follow_contacts(self.system, segment, contacts);
                 self.follow_slip(segment);
                 self.follow_room(segment);
             }
@@ -87,66 +90,64 @@ impl<'a> Survey<'a> {
     }
 
     fn integrate(&mut self, segment: &FlowSegment<'_>) {
-        let (modes, points) = (self.system.modes(), self.system.points());
+        let (system, modes, points) = (self.system, self.system.modes(), self.system.points());
         let angle = self.omega * segment.duration();
         let count = NODES + (0.5 * angle * self.orders as f64).ceil() as usize;
-        let mut motion = vec![0.0; modes + points];
-        let (mut velocity, mut damping, mut load) =
-            (vec![0.0; modes], vec![0.0; modes], vec![0.0; modes]);
-        let step = if self.half_wave { 2 } else { 1 };
+        let rule = self.quadrature.rule(count).to_vec();
+        let values = segment.series.values(rule.iter().map(|(x, _)| x * segment.length));
         let slips = segment.regime.points.iter().any(|state| state.slips());
-        for &(x, weight) in self.quadrature.rule(count) {
-            let tau = x * segment.length;
-            segment.series.motion_at(tau, &mut motion[..modes], &mut velocity);
-            for point in 0..points {
-                motion[modes + point] = segment.series.force_at(point, tau);
-            }
+        let (mut damping, mut load) = (vec![0.0; modes], vec![0.0; modes]);
+        let step = if self.half_wave { 2 } else { 1 };
+        let orders: Vec<usize> = (usize::from(self.half_wave)..self.orders).step_by(step).collect();
+        // cos and −sin of all orders, node after node.
+        let mut waves = Mat::<f64>::zeros(2 * orders.len(), count);
+        for (node, &(x, weight)) in rule.iter().enumerate() {
+            let velocity = values.velocity.col_as_slice(node);
             let phase = self.omega * segment.start + x * angle;
             damping.fill(0.0);
-            self.system.add_damping(&velocity, 1.0, &mut damping);
+            system.add_damping(velocity, 1.0, &mut damping);
             load.fill(0.0);
-            self.system.add_load(phase, 1.0, &mut load);
+            system.add_load(phase, 1.0, &mut load);
             let time = weight * segment.duration();
             for j in 0..modes {
                 self.viscous += time * damping[j] * velocity[j];
                 self.work += time * load[j] * velocity[j];
             }
+            let [speed, force] = [&values.speed, &values.force].map(|all| all.col_as_slice(node));
             let share = time * self.omega / TAU;
             for branch in segment.series.branches() {
-                let own = &self.system.microslips()[branch.number];
-                let shape = self.system.contact_shape(own.point).iter();
-                let speed: f64 = shape.zip(&velocity).map(|(b, v)| b * v).sum();
+                let own = &system.microslips()[branch.number];
                 let summary = &mut self.contacts[own.point];
-                summary.dissipation += time * motion[modes + own.point] * speed;
+                summary.dissipation += time * force[own.point] * speed[own.point];
                 // Mean over its elements, weighted by their stiffness.
                 let stiffness = own.curve.stiffness();
                 if stiffness > 0.0 {
-                    summary.slip_fraction += share * (1.0 - branch.stiffness_at(tau) / stiffness);
+                    let left = branch.stiffness_at(x * segment.length) / stiffness;
+                    summary.slip_fraction += share * (1.0 - left);
                 }
             }
             if slips {
-                let speed = self.system.contact_displacement(&velocity);
-                let force = &motion[modes..];
-                add_friction(
-                    self.system,
-                    segment.regime,
-                    time,
-                    [&speed, force],
-                    &mut self.contacts,
-                );
+                add_friction(system, segment.regime, time, [speed, force], &mut self.contacts);
             }
             // Half a period of an odd motion counts twice.
             let share = weight * angle / TAU * if self.half_wave { 2.0 } else { 1.0 };
             let turn = c64::new(phase.cos(), -phase.sin());
             let (mut rotation, stride) =
                 if self.half_wave { (turn, turn * turn) } else { (c64::new(1.0, 0.0), turn) };
-            for order in (usize::from(self.half_wave)..self.orders).step_by(step) {
-                let weight = rotation * if order == 0 { share } else { 2.0 * share };
-                let row = &mut self.series[order * motion.len()..(order + 1) * motion.len()];
-                for (sum, value) in row.iter_mut().zip(&motion) {
-                    *sum += weight * *value;
-                }
+            let wave = waves.col_as_slice_mut(node).chunks_exact_mut(2);
+            for (order, wave) in orders.iter().zip(wave) {
+                let weight = rotation * if *order == 0 { share } else { 2.0 * share };
+                wave.copy_from_slice(&[weight.re, weight.im]);
                 rotation *= stride;
+            }
+        }
+        for (first, motion) in [(0, &values.displacement), (modes, &values.force)] {
+            let sums = motion * waves.transpose();
+            for (place, order) in orders.iter().enumerate() {
+                let row = &mut self.series[order * (modes + points) + first..];
+                let parts =
+                    sums.col_as_slice(2 * place).iter().zip(sums.col_as_slice(2 * place + 1));
+                row.iter_mut().zip(parts).for_each(|(sum, (re, im))| *sum += c64::new(*re, *im));
             }
         }
     }
@@ -266,7 +267,8 @@ fn add_friction(
 ) {
     for (point, summary) in contacts.iter_mut().enumerate() {
         if regime.points[point].sign() != 0.0 {
-            let slip: f64 = (0..speed.len()).map(|j| regime.slip_rate[(point, j)] * speed[j]).sum();
+            let own = system.together_with(point);
+            let slip: f64 = own.map(|j| regime.slip_rate[(point, j)] * speed[j]).sum();
             summary.dissipation += time * force[point] * slip;
         }
     }

@@ -2,9 +2,10 @@
 
 use super::closed::Orbit;
 use super::periodic::PeriodicOrbits;
-use crate::balance::{brent, check_bracket, over_frequencies, PointStatus};
+use crate::balance::{brent, check_bracket, check_frequencies, over_frequencies, PointStatus};
 use crate::fourier::Measure;
 use crate::motion::State;
+use crate::parallel::in_parts;
 use crate::timing::Profile;
 use crate::Error;
 use std::sync::Arc;
@@ -28,23 +29,44 @@ pub struct Orbits {
     pub profile: Profile,
 }
 
-/// Finds the orbits at the frequencies `omega` [rad/s], in their order.
+/// Most orbits that are found one from the other where each could be found by itself.
+const PIECE: usize = 16;
+
+/// Finds the orbits at the frequencies `omega` [rad/s], in their order. Where one motion alone is possible
+/// pieces of the sweep are worked on at the same time, the same pieces with any number of threads.
 ///
 /// # Errors
 /// A frequency that is not positive, or as [`PeriodicOrbits::solve`].
-pub fn orbit_sweep(mut orbits: PeriodicOrbits<'_>, omega: &[f64]) -> Result<Orbits, Error> {
+pub fn orbit_sweep(orbits: PeriodicOrbits<'_>, omega: &[f64]) -> Result<Orbits, Error> {
     let start = Instant::now();
-    let kept = orbits.kept;
-    let (mut points, interrupted) = over_frequencies(
-        &mut orbits,
-        omega,
-        kept,
-        PeriodicOrbits::report,
-        |orbits, points, frequency| {
-            let orbit = orbits.solve(frequency, predict(points, frequency).as_ref())?;
-            Ok(Some(orbit).filter(|orbit| orbit.response.status != PointStatus::NotComputed))
-        },
-    )?;
+    check_frequencies(omega)?;
+    let (plan, kept) = (&orbits.plan, orbits.kept);
+    let pieces = if plan.unique { omega.len().div_ceil(PIECE) } else { 1 };
+    let ends = |piece: usize| piece * omega.len() / pieces.max(1);
+    let found = in_parts(pieces.max(1), orbits.progress, |piece, progress| {
+        let mut own = plan.clone().orbits(progress);
+        let omega = &omega[ends(piece)..ends(piece + 1)];
+        let found = over_frequencies(
+            &mut own,
+            omega,
+            kept,
+            PeriodicOrbits::report,
+            |orbits, points, frequency| {
+                let orbit = orbits.solve(frequency, predict(points, frequency).as_ref())?;
+                Ok(Some(orbit).filter(|orbit| orbit.response.status != PointStatus::NotComputed))
+            },
+        );
+        found.map(|(points, interrupted)| (points, interrupted, own.profile))
+    });
+    let (mut points, mut interrupted, mut profile) = (Vec::new(), false, Profile::default());
+    for piece in found {
+        let (own, ended, spent) = piece?;
+        points.extend(own);
+        interrupted |= ended;
+        profile.add(&spent);
+        profile.recovery += spent.recovery;
+        profile.homotopies += spent.homotopies;
+    }
     if points.is_empty() {
         let empty = |&first| Arc::new(orbits.empty(first, PointStatus::NotComputed));
         points.extend(omega.first().map(empty));
@@ -53,7 +75,7 @@ pub fn orbit_sweep(mut orbits: PeriodicOrbits<'_>, omega: &[f64]) -> Result<Orbi
         points,
         half_wave: orbits.half_wave(),
         interrupted,
-        profile: Profile { total: start.elapsed(), ..orbits.profile },
+        profile: Profile { total: start.elapsed(), ..profile },
     })
 }
 

@@ -44,6 +44,11 @@ pub trait System {
     /// Residual at `x` alone; [`System::solve`] goes on with the Jacobian it has.
     fn value(&mut self, x: &[f64], out: &mut [f64]);
 
+    /// Price of the Jacobian that [`System::solve`] needs, in residuals.
+    fn price(&self) -> f64 {
+        2.0
+    }
+
     /// Residual and whole Jacobian at `x`; by forward differences unless the system knows better.
     fn jacobian(&mut self, x: &[f64], residual: &mut [f64], out: &mut Mat<f64>) {
         differences(self, x, residual, out);

@@ -55,6 +55,9 @@ const SERVES_AGAIN: f64 = 1e-3;
 /// stiff contacts are small differences, which an error of the unknowns reaches many times over.
 const OF_KEPT: f64 = 1e-2;
 
+/// Most further steps that are taken with one Jacobian.
+const MOST_KEPT: f64 = 8.0;
+
 /// Relative step at which rounding hides what a step leaves.
 const CLOSE: f64 = 1e-9;
 
@@ -239,8 +242,9 @@ impl<'a, S: System> Newton<'a, S> {
             }
         }
         self.fresh = !kept;
-        // Two more steps with the same Jacobian cost less than a new one; three do not.
-        if kept && left * contraction * contraction > self.tolerance {
+        // As many more steps with the same Jacobian as a new one costs are worth it.
+        let steps = self.system.price().clamp(2.0, MOST_KEPT);
+        if kept && left * contraction.powf(steps) > self.tolerance {
             self.linearise();
         }
         None
