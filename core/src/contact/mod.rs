@@ -14,6 +14,7 @@ mod coulomb_drive;
 mod coulomb_element;
 mod coulomb_grid;
 mod coulomb_harmonics;
+mod coulomb_panel;
 mod coulomb_period;
 mod coulomb_plane;
 mod coulomb_play;

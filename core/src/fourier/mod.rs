@@ -4,12 +4,14 @@ mod gradient;
 mod harmonics;
 mod instants;
 mod interval_sums;
+mod lanes;
 mod panel;
 mod turning_points;
 
 pub use gradient::amplitude_gradient;
 pub use harmonics::Harmonics;
 pub use interval_sums::IntervalSums;
+pub(crate) use lanes::{cos_sin, doubled, rotate, sum, SERIES};
 pub use panel::{Interval, Lanes, Panel, NODES};
 pub use turning_points::{SampleTable, TurningPoint};
 
