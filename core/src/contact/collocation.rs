@@ -74,7 +74,7 @@ impl Collocation {
         let mut out = [0.0; NODES];
         for (integral, value) in self.integral.iter().zip(values) {
             for i in 0..NODES {
-                out[i] += value * integral[i];
+                out[i] = value.mul_add(integral[i], out[i]);
             }
         }
         out
@@ -123,7 +123,7 @@ impl NodeFactors {
             for other in right {
                 let by = other[k];
                 for i in 0..NODES {
-                    other[i] -= by * column[i];
+                    other[i] = (-by).mul_add(column[i], other[i]);
                 }
             }
         }
@@ -136,13 +136,13 @@ impl NodeFactors {
         for (k, column) in self.lower.iter().enumerate() {
             let by = right[k];
             for i in 0..NODES {
-                right[i] -= by * column[i];
+                right[i] = (-by).mul_add(column[i], right[i]);
             }
         }
         for k in (0..NODES).rev() {
             let by = right[k] * self.inverse[k];
             for i in 0..NODES {
-                right[i] -= by * self.upper[k][i];
+                right[i] = (-by).mul_add(self.upper[k][i], right[i]);
             }
             right[k] = by;
         }

@@ -338,14 +338,14 @@ impl Panel {
                 for (j, gain) in gain.iter().enumerate() {
                     for (sum, source) in sums.iter_mut().zip(&source) {
                         for i in 0..NODES {
-                            sum[i] += source[j] * gain[i];
+                            sum[i] = source[j].mul_add(gain[i], sum[i]);
                         }
                     }
                 }
                 rates.copy_from_slice(&sums[..rates.len()]);
                 for ((rate, start), source) in rates.iter_mut().zip(starts).zip(&source) {
                     for i in 0..NODES {
-                        rate[i] += *start * by_start[i];
+                        rate[i] = start.mul_add(by_start[i], rate[i]);
                     }
                     *start = *start * last_by_start + product(&last, source);
                 }

@@ -107,7 +107,7 @@ impl<'a> Plane<'a> {
 fn add(out: &mut Lanes, [cos, sin]: [&Lanes; 2], coefficients: &[f64]) {
     let (a, b) = (coefficients[0], coefficients[1]);
     for i in 0..NODES {
-        out[i] += a * cos[i] + b * sin[i];
+        out[i] = a.mul_add(cos[i], b.mul_add(sin[i], out[i]));
     }
 }
 
