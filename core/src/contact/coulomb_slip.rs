@@ -121,4 +121,3 @@ pub(super) fn differentiated(drive: &Drive<'_>, basis: &[f64], slope: &mut [f64]
         slope[slot + 1] = *order as f64 * basis[slot];
     }
 }
-
