@@ -141,8 +141,8 @@ impl NodeFactors {
         }
         for k in (0..NODES).rev() {
             let by = right[k] * self.inverse[k];
-            for i in 0..NODES {
-                right[i] = (-by).mul_add(self.upper[k][i], right[i]);
+            for (right, upper) in right.iter_mut().zip(&self.upper[k]) {
+                *right = (-by).mul_add(*upper, *right);
             }
             right[k] = by;
         }

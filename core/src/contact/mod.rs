@@ -20,6 +20,7 @@ mod coulomb_plane;
 mod coulomb_play;
 mod coulomb_slip;
 mod coulomb_step;
+mod coulomb_variation;
 mod cubic;
 mod derivative;
 mod described;
