@@ -21,8 +21,18 @@ fn marched(case: &Case, samples: usize) -> SlipLoad {
     load(&sampled, motion(&case.table, &case.displacement), false)
 }
 
+/// Steps of differences, which err too: by their order, by rounding, and where an event lies within them.
+const DIFFERENCES: [f64; 5] = [1e-5, 1e-4, 1e-6, 3e-4, 1e-7];
+
+/// Difference between the tangent and the differences that agree with it best.
 fn tangent_error(case: &Case, residual: Residual) -> f64 {
-    tangent_error_by(case, residual, 1e-5)
+    let mut least = f64::INFINITY;
+    for step in DIFFERENCES {
+        if least > 1e-8 {
+            least = least.min(tangent_error_by(case, residual, step));
+        }
+    }
+    least
 }
 
 fn tangent_error_by(case: &Case, residual: Residual, step: f64) -> f64 {
@@ -113,7 +123,7 @@ fn the_tangent_in_one_direction_is_that_of_differences() {
 
 #[test]
 fn the_tangent_in_two_directions_is_that_of_differences() {
-    check_tangents(2, 73, 500, 0.9, 1e-5);
+    check_tangents(2, 73, 500, 0.94, 3e-6);
 }
 
 /// Friction work and mean, first cosine and sine of both tractions along an ellipse: half-axes and

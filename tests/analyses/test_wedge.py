@@ -360,3 +360,27 @@ def test_turning_wedge_moves_as_the_wedge_where_nothing_turns_it():
         atol=1e-6 * np.abs(other.coefficients("damper.y")).max(),
     )
     assert np.abs(one.coefficients("damper.rotation")).max() < 1e-9
+
+
+def test_verdicts_where_a_face_touches_its_limit():
+    """Rounding decides whether the face slips for an instant: the verdict does not depend on it."""
+    blade = ss.Structure(np.eye(2), [[6e5, -3e5], [-3e5, 6e5]], 20.0 * np.eye(2), ["x", "y"])
+    links = [ss.Coupling(f"left.{a}", f"right.{a}", stiffness=7e5) for a in "xy"]
+    wedge = replace(WEDGE, angle=30.0, friction=0.5, load=60.0)
+    dofs = {f"{side}_dofs": [f"{side}.x", f"{side}.y"] for side in ("left", "right")}
+    forces = [ss.Force("left.y", -20.0), ss.Force("right.x", 5.0)]
+    model = wedge.inside(ss.join({"left": blade, "right": blade}, links), **dofs, forces=forces)
+    own = model.structure
+    stiffness = own.stiffness.copy()
+    at = [own.index("damper.x"), own.index("damper.y")]
+    stiffness[np.ix_(at, at)] += 3e5 * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    model = model.with_structure(ss.Structure(own.mass, stiffness, own.damping, own.dofs))
+    omega = 2.0 * np.pi * np.linspace(156.30, 156.42, 7)
+    orbits = ss.exact_response(model, omega)
+    balance = ss.forced_response(model, omega, 31)
+    assert list(orbits.stable) == 7 * [False]
+    assert list(balance.stable) == list(orbits.stable)
+    for number in range(7):
+        assert orbits.slip_fraction("right")[number].max() == 0.0
+    largest = np.abs(orbits.multipliers).max(axis=1)
+    assert np.abs(np.diff(largest)).max() < 0.05

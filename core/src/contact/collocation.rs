@@ -5,15 +5,18 @@ use std::sync::OnceLock;
 /// Nodes of a panel.
 pub(super) const NODES: usize = 12;
 
+/// A number at every node.
+pub(super) type Lanes = [f64; NODES];
+
 /// Gauss-Legendre collocation on [0, 1].
 pub(super) struct Collocation {
-    pub(super) node: [f64; NODES],
-    pub(super) weight: [f64; NODES],
-    /// Integrals of the Lagrange polynomials up to the nodes.
-    pub(super) integral: [[f64; NODES]; NODES],
+    pub(super) node: Lanes,
+    pub(super) weight: Lanes,
+    /// Integrals of every Lagrange polynomial up to the nodes.
+    pub(super) integral: [Lanes; NODES],
     /// The last two Legendre coefficients of values at the nodes.
-    pub(super) tail: [[f64; NODES]; 2],
-    pub(super) barycentric: [f64; NODES],
+    pub(super) tail: [Lanes; 2],
+    pub(super) barycentric: Lanes,
 }
 
 /// Legendre polynomials of orders up to NODES at x in [−1, 1].
@@ -37,7 +40,7 @@ impl Collocation {
         let n = NODES as f64;
         let slope =
             |x: f64, p: &[f64; NODES + 1]| n * (x * p[NODES] - p[NODES - 1]) / (x * x - 1.0);
-        let node: [f64; NODES] = std::array::from_fn(|j| {
+        let node: Lanes = std::array::from_fn(|j| {
             let mut x = -(std::f64::consts::PI * (j as f64 + 0.75) / (n + 0.5)).cos();
             for _ in 0..20 {
                 let p = legendre(x);
@@ -46,11 +49,11 @@ impl Collocation {
             x
         });
         let at = node.map(legendre);
-        let weight: [f64; NODES] = std::array::from_fn(|j| {
+        let weight: Lanes = std::array::from_fn(|j| {
             1.0 / ((1.0 - node[j] * node[j]) * slope(node[j], &at[j]).powi(2))
         });
-        let integral = std::array::from_fn(|i| {
-            std::array::from_fn(|j| {
+        let integral = std::array::from_fn(|j| {
+            std::array::from_fn(|i| {
                 let terms = (1..NODES).map(|k| (at[i][k + 1] - at[i][k - 1]) * at[j][k]);
                 0.5 * weight[j] * (1.0 + node[i] + terms.sum::<f64>())
             })
@@ -65,8 +68,20 @@ impl Collocation {
         Self { node, weight, integral, tail, barycentric }
     }
 
+    /// Integrals up to the nodes of the polynomial through values at them.
+    #[inline(always)]
+    pub(super) fn integrals(&self, values: &Lanes) -> Lanes {
+        let mut out = [0.0; NODES];
+        for (integral, value) in self.integral.iter().zip(values) {
+            for i in 0..NODES {
+                out[i] = value.mul_add(integral[i], out[i]);
+            }
+        }
+        out
+    }
+
     /// The polynomial through values at the nodes, at a share of the panel.
-    pub(super) fn interpolate(&self, values: &[f64; NODES], share: f64) -> f64 {
+    pub(super) fn interpolate(&self, values: &Lanes, share: f64) -> f64 {
         let (mut sum, mut weights) = (0.0, 0.0);
         for ((node, weight), value) in self.node.iter().zip(&self.barycentric).zip(values) {
             if share == *node {
@@ -77,5 +92,59 @@ impl Collocation {
             weights += weight;
         }
         sum / weights
+    }
+}
+
+/// LU factors of the matrix of a collocation, `1 + h A D` with D diagonal, by columns.
+///
+/// They need no pivots as long as D is not far below zero: with the weights b of the quadrature
+/// `x·BAx = ½ (b·x)²` (Hairer and Wanner 1996, section IV.12), so that `B (1/D + h A)` is positive definite.
+pub(super) struct NodeFactors {
+    /// Below the diagonal, and above it.
+    lower: [Lanes; NODES],
+    upper: [Lanes; NODES],
+    inverse: Lanes,
+}
+
+impl NodeFactors {
+    /// Factors a matrix, column after column.
+    #[inline(always)]
+    pub(super) fn new(mut upper: [Lanes; NODES]) -> Self {
+        let mut lower = [[0.0; NODES]; NODES];
+        let mut inverse = [0.0; NODES];
+        for k in 0..NODES {
+            inverse[k] = 1.0 / upper[k][k];
+            for i in 0..NODES {
+                let value = upper[k][i];
+                lower[k][i] = if i > k { value * inverse[k] } else { 0.0 };
+                upper[k][i] = if i < k { value } else { 0.0 };
+            }
+            let (column, right) = (lower[k], &mut upper[k + 1..]);
+            for other in right {
+                let by = other[k];
+                for i in 0..NODES {
+                    other[i] = (-by).mul_add(column[i], other[i]);
+                }
+            }
+        }
+        Self { lower, upper, inverse }
+    }
+
+    /// Solves in place for one right-hand side.
+    #[inline(always)]
+    pub(super) fn solve(&self, right: &mut Lanes) {
+        for (k, column) in self.lower.iter().enumerate() {
+            let by = right[k];
+            for i in 0..NODES {
+                right[i] = (-by).mul_add(column[i], right[i]);
+            }
+        }
+        for k in (0..NODES).rev() {
+            let by = right[k] * self.inverse[k];
+            for (right, upper) in right.iter_mut().zip(&self.upper[k]) {
+                *right = (-by).mul_add(*upper, *right);
+            }
+            right[k] = by;
+        }
     }
 }

@@ -14,7 +14,7 @@
 
 use super::collocation::NODES;
 use super::coulomb_drive::Drive;
-use super::coulomb_slip::Panel;
+use super::coulomb_panel::Panel;
 use super::slider_integrals::{dot, Bounds};
 use super::{Phase, PointState, PointSummary};
 use crate::fourier::IntervalSums;
@@ -195,46 +195,33 @@ impl Cycle {
     /// The traction M e of slip in the plane, by the quadrature of its panels.
     fn add_turning(&self, drive: &Drive<'_>, value: &mut [f64], out: &mut [f64]) {
         let slots = drive.harmonics().slots();
-        let (width, varies) = (self.columns, drive.pressing.is_some());
         let weight = 2.0 / drive.harmonics().span();
-        let mut sum = Block::zeros(2 * slots, width);
-        let mut by_limit = Block::zeros(2 * slots, drive.limit_columns());
+        let width = if out.is_empty() { 0 } else { self.columns };
+        // Derivatives of the integrals of both directions, column after column.
+        let mut sums = Block::zeros(2 * width, slots);
+        let mut factors = Block::zeros(2 * width, NODES);
+        let mut basis = Block::zeros(NODES, slots);
         let mut any = false;
         for stretch in &self.stretches {
             let State::Turning(panel) = &stretch.state else { continue };
-            let mut across = Block::zeros(2 * slots, NODES);
-            let mut along = Block::zeros(2 * slots, NODES);
-            let mut limits = Block::zeros(NODES, drive.limit_columns());
-            for (n, own) in panel.weights().into_iter().enumerate() {
-                let (sin, cos) = panel.angle[n].sin_cos();
-                let limit = panel.limit[n];
-                let basis = &panel.basis[n * slots..(n + 1) * slots];
-                for (k, b) in basis.iter().enumerate() {
-                    let b = weight * own * b;
-                    value[k] -= b * limit * cos;
-                    value[slots + k] -= b * limit * sin;
-                    across[(k, n)] = -b * limit * sin;
-                    across[(slots + k, n)] = b * limit * cos;
-                    along[(k, n)] = b * cos;
-                    along[(slots + k, n)] = b * sin;
+            any = true;
+            let weights = panel.weights().map(|own| -weight * own);
+            panel.add_traction(&weights, value);
+            if width > 0 {
+                for n in 0..NODES {
+                    let row = basis.row_mut(n).iter_mut().zip(&panel.basis);
+                    row.for_each(|(entry, basis)| *entry = basis[n]);
                 }
-                if varies {
-                    limits.row_mut(n)[..slots].copy_from_slice(basis);
-                } else {
-                    limits[(n, 0)] = 1.0;
-                }
-            }
-            if !out.is_empty() {
-                any = true;
-                sum.subtract_product(&across, &panel.rate);
-                by_limit.subtract_product(&along, &limits);
+                panel.weigh_rates(&weights, drive, &mut factors);
+                sums.subtract_product(&factors, &basis);
             }
         }
-        if any {
+        if any && width > 0 {
             for (row, out) in out.chunks_exact_mut(width).enumerate() {
-                out.iter_mut().zip(sum.row(row)).for_each(|(out, sum)| *out += sum);
-                let limit = out[2 * slots..].iter_mut();
-                limit.zip(by_limit.row(row)).for_each(|(out, sum)| *out += sum);
+                let first = row / slots * width;
+                for (column, out) in out.iter_mut().enumerate() {
+                    *out -= sums[(first + column, row % slots)];
+                }
             }
         }
     }

@@ -96,16 +96,23 @@ impl<'a> Drive<'a> {
     /// K and its slope at an angle, and `N₀ + k_n v` with its slope.
     pub(super) fn at(&self, theta: f64) -> ([[f64; 2]; 2], [f64; 2]) {
         let harmonics = self.harmonics();
-        let mut pull = [[0.0; 2]; 2];
-        for (direction, pull) in pull.iter_mut().enumerate().take(self.directions) {
-            let jet = harmonics.jet(self.pull(direction), theta);
-            *pull = [jet[0], jet[1]];
-        }
-        let pressing = self.pressing.as_ref().map_or([self.at_rest, 0.0], |pressing| {
-            let jet = harmonics.jet(&pressing.series, theta);
-            [jet[0], jet[1]]
-        });
-        (pull, pressing)
+        let front = |[value, slope, _]: [f64; 3]| [value, slope];
+        let at_rest = [self.at_rest, 0.0, 0.0];
+        let [x, y, pressing] = match (self.directions, &self.pressing) {
+            (2, Some(pressing)) => {
+                harmonics.jets([self.pull(0), self.pull(1), &pressing.series], theta)
+            }
+            (2, None) => {
+                let [x, y] = harmonics.jets([self.pull(0), self.pull(1)], theta);
+                [x, y, at_rest]
+            }
+            (_, Some(pressing)) => {
+                let [x, pressing] = harmonics.jets([self.pull(0), &pressing.series], theta);
+                [x, [0.0; 3], pressing]
+            }
+            (_, None) => [harmonics.jet(self.pull(0), theta), [0.0; 3], at_rest],
+        };
+        ([front(x), front(y)], front(pressing))
     }
 
     /// Where the first direction of K is least, and where it is largest.

@@ -10,8 +10,9 @@ use super::coulomb_circle::centre;
 use super::coulomb_cycle::{Cycle, State, Stretch};
 use super::coulomb_drive::{Closed, Drive};
 use super::coulomb_grid::Grid;
+use super::coulomb_panel::{RESOLVED, ROUGHLY};
 use super::coulomb_plane::{March, Slider};
-use super::coulomb_slip::{Plane, RESOLVED, ROUGHLY};
+use super::coulomb_slip::Plane;
 use super::{Coulomb, Residual};
 
 /// Laps of the first, coarse march.

@@ -8,7 +8,8 @@ use super::collocation::NODES;
 use super::coulomb_cycle::{Cycle, State, Stretch};
 use super::coulomb_drive::Drive;
 use super::coulomb_grid::{excess, Grid};
-use super::coulomb_slip::{differentiated, Panel, Plane, RESOLVED};
+use super::coulomb_panel::{Panel, RESOLVED};
+use super::coulomb_slip::{differentiated, Plane};
 use super::transitions::root;
 
 /// Excess over the limit, relative to it, that is none.
@@ -94,12 +95,7 @@ impl<'a> March<'a> {
                         *slider += rate[width - 2] * by[0] + rate[width - 1] * by[1];
                     }
                 }
-                State::Turning(panel) => {
-                    for (j, angle) in panel.angle.iter_mut().enumerate() {
-                        let rate = &panel.rate.row(j)[..width];
-                        *angle += rate[width - 2] * by[0] + rate[width - 1] * by[1];
-                    }
-                }
+                State::Turning(panel) => panel.correct(by),
                 _ => {}
             }
         }

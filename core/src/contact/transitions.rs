@@ -142,6 +142,10 @@ pub(super) fn root([mut low, mut high]: [f64; 2], of: &dyn Fn(f64) -> [f64; 2]) 
     let mut theta = 0.5 * (low + high);
     for _ in 0..STEPS {
         let [value, slope] = of(theta);
+        let rounding = 4.0 * f64::EPSILON * (1.0 + theta);
+        if (value / slope).abs() <= rounding {
+            break;
+        }
         if value > 0.0 {
             low = theta;
         } else {
@@ -151,7 +155,7 @@ pub(super) fn root([mut low, mut high]: [f64; 2], of: &dyn Fn(f64) -> [f64; 2]) 
         let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
         let moved = (next - theta).abs();
         theta = next;
-        if moved <= 4.0 * f64::EPSILON * (1.0 + theta) {
+        if moved <= rounding {
             break;
         }
     }

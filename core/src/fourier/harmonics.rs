@@ -125,15 +125,24 @@ impl Harmonics {
     /// Value and first two derivatives of a series at the angle `theta`.
     #[must_use]
     pub fn jet(&self, series: &[f64], theta: f64) -> [f64; 3] {
-        let (mut value, mut slope, mut curvature) = (self.mean(series), 0.0, 0.0);
+        let [jet] = self.jets([series], theta);
+        jet
+    }
+
+    /// Values and first two derivatives of series at the angle `theta`.
+    #[must_use]
+    pub fn jets<const N: usize>(&self, series: [&[f64]; N], theta: f64) -> [[f64; 3]; N] {
+        let mut jets = series.map(|series| [self.mean(series), 0.0, 0.0]);
         self.rotate(theta, |order, cos, sin, slot| {
-            let (a, b) = (series[slot], series[slot + 1]);
-            let (in_phase, quadrature) = (a * cos + b * sin, b * cos - a * sin);
-            value += in_phase;
-            slope += order * quadrature;
-            curvature -= order * order * in_phase;
+            for (jet, series) in jets.iter_mut().zip(series) {
+                let (a, b) = (series[slot], series[slot + 1]);
+                let (in_phase, quadrature) = (a * cos + b * sin, b * cos - a * sin);
+                jet[0] += in_phase;
+                jet[1] += order * quadrature;
+                jet[2] -= order * order * in_phase;
+            }
         });
-        [value, slope, curvature]
+        jets
     }
 
     /// Writes the basis `[1,] cos kθ, sin kθ, …` at the angle `theta`.

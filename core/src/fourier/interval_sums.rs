@@ -3,7 +3,7 @@
 //! All products of two basis functions follow from `∫ cos mθ` and `∫ sin mθ`, m ≤ 2H: their matrix
 //! is Toeplitz plus Hankel, at O(intervals·H + H²) instead of O(samples·H²).
 
-use super::panel::{rotate, sum, Lanes, NODES};
+use super::lanes::{rotate, sum, Lanes, NODES};
 use super::Harmonics;
 use pulp::{Simd, WithSimd};
 

@@ -4,6 +4,7 @@ mod gradient;
 mod harmonics;
 mod instants;
 mod interval_sums;
+mod lanes;
 mod panel;
 mod row_sums;
 mod turning_points;
@@ -11,7 +12,9 @@ mod turning_points;
 pub use gradient::amplitude_gradient;
 pub use harmonics::Harmonics;
 pub use interval_sums::IntervalSums;
-pub use panel::{Interval, Lanes, Panel, NODES};
+pub(crate) use lanes::{cos_sin, doubled, rotate, sum, SERIES};
+pub use lanes::{Lanes, NODES};
+pub use panel::{Interval, Panel};
 pub use turning_points::{SampleTable, TurningPoint};
 
 /// Which scalar stands for the size of a periodic motion.

@@ -1,22 +1,14 @@
 //! Gauss panels: integrals of smooth functions times the basis over an interval of angles.
 
+use super::lanes::{cos_sin, doubled, rotate, sum, Lanes, NODES};
 use super::{Harmonics, IntervalSums};
 use pulp::{Simd, WithSimd};
 use std::f64::consts::PI;
 use std::sync::OnceLock;
 
-/// Nodes of a panel.
-pub const NODES: usize = 24;
-
-/// A number at every node.
-pub type Lanes = [f64; NODES];
-
 /// Largest product of the highest harmonic and the length of a panel at which the rule integrates
 /// products of two basis functions and a function that it resolves.
 const LENGTH: f64 = 13.0;
-
-/// Terms of the series of cosine and sine beyond the first: what is left out is below rounding.
-const TERMS: usize = 10;
 
 /// The rule of Gauss and Legendre.
 struct Rule {
@@ -264,55 +256,8 @@ impl WithSimd for Integrating<'_> {
             out[0] += sum(weighted);
         }
         for (row, out) in panel.basis.iter().zip(&mut out[harmonics.offset()..]) {
-            *out += sum(&std::array::from_fn(|i| weighted[i] * row[i]));
+            *out += sum::<NODES>(&std::array::from_fn(|i| weighted[i] * row[i]));
         }
-    }
-}
-
-/// Cosines and sines by their series about zero: the angles of a panel are at most [`LENGTH`]/8.
-#[inline(always)]
-fn cos_sin(angle: &Lanes) -> [Lanes; 2] {
-    let (mut cos, mut sin) = ([1.0; NODES], [1.0; NODES]);
-    let square: Lanes = std::array::from_fn(|i| angle[i] * angle[i]);
-    for n in (1..=TERMS).rev() {
-        let even = -1.0 / ((2 * n - 1) * 2 * n) as f64;
-        let odd = -1.0 / (2 * n * (2 * n + 1)) as f64;
-        for i in 0..NODES {
-            cos[i] = 1.0 + even * square[i] * cos[i];
-            sin[i] = 1.0 + odd * square[i] * sin[i];
-        }
-    }
-    (0..NODES).for_each(|i| sin[i] *= angle[i]);
-    [cos, sin]
-}
-
-/// Sum of all lanes.
-#[inline(always)]
-pub(super) fn sum(lanes: &Lanes) -> f64 {
-    let mut four = [0.0; 4];
-    for part in lanes.chunks_exact(4) {
-        (0..4).for_each(|i| four[i] += part[i]);
-    }
-    (four[0] + four[1]) + (four[2] + four[3])
-}
-
-#[inline(always)]
-fn doubled(cos: &Lanes, sin: &Lanes) -> [Lanes; 2] {
-    let mut out = [[0.0; NODES]; 2];
-    for i in 0..NODES {
-        out[0][i] = (cos[i] - sin[i]) * (cos[i] + sin[i]);
-        out[1][i] = 2.0 * sin[i] * cos[i];
-    }
-    out
-}
-
-/// Turns every lane by its step.
-#[inline(always)]
-pub(super) fn rotate(cos: &mut Lanes, sin: &mut Lanes, [cos_step, sin_step]: &[Lanes; 2]) {
-    for i in 0..NODES {
-        let (c, s) = (cos[i], sin[i]);
-        cos[i] = c * cos_step[i] - s * sin_step[i];
-        sin[i] = s * cos_step[i] + c * sin_step[i];
     }
 }
 

@@ -99,8 +99,11 @@ pub(super) fn choose(
     let system = shooting.coordinates.system();
     let most = settings.max_iterations.min(CLOSING);
     let settings = NewtonSettings { max_iterations: most, ..settings };
-    if !system.has_normals() || !system.rigid_modes().is_empty() {
+    if !system.has_normals() {
         return Chosen::Inside;
+    }
+    if !system.rigid_modes().is_empty() {
+        return leave(shooting, assumption, y, settings, iterations);
     }
     for number in 0..STEPS {
         let Some(kept) = kept(shooting, assumption, y) else { return Chosen::Lost };
@@ -122,6 +125,48 @@ pub(super) fn choose(
         *y = next;
     }
     Chosen::Lost
+}
+
+/// Leaves the sliders of bodies that contacts alone hold where they are: at most a little away from limits
+/// that they touch, where rounding decides whether they slip for an instant.
+fn leave(
+    shooting: &mut Shooting<'_>,
+    assumption: Assumption<'_>,
+    y: &mut Vec<f64>,
+    settings: NewtonSettings,
+    iterations: &mut usize,
+) -> Chosen {
+    let kept = kept(shooting, assumption, y).unwrap_or_default();
+    if !kept.iter().any(Kept::touches) {
+        return Chosen::Inside;
+    }
+    let mut clear = inwards(shooting, y, &kept);
+    let report = newton(shooting, &mut clear, settings);
+    *iterations += report.iterations;
+    if report.outcome == Outcome::Converged {
+        *y = clear;
+    }
+    Chosen::Touching
+}
+
+/// The orbit with the sliders that touch their limit moved by a little to the side on which nothing slips.
+fn inwards(shooting: &Shooting<'_>, y: &[f64], kept: &[Kept]) -> Vec<f64> {
+    let mut inside = y.to_vec();
+    for one in kept.iter().filter(|one| one.touches()) {
+        let by = (DIFFERENCE * one.scale).min(one.inwards().abs()).copysign(one.inwards());
+        if let Some(strain) = strain(shooting, one.point) {
+            inside[strain] -= by / one.root;
+        }
+    }
+    inside
+}
+
+/// The coordinate of an orbit that is the strain of a contact.
+fn strain(shooting: &Shooting<'_>, point: usize) -> Option<usize> {
+    let system = shooting.coordinates.system();
+    let first = shooting.coordinates.size() - system.strains();
+    let body = system.bodies().iter().find(|body| body.points.contains(&point));
+    body.map(|body| first + body.strains.start)
 }
 
 /// Change of the orbit that leads the sliders to the assumed positions, to first order.
@@ -167,21 +212,9 @@ fn step(
 
 /// Derivative of the closed orbit in the positions of the sliders, column by column.
 fn responses(shooting: &mut Shooting<'_>, y: &[f64], kept: &[Kept]) -> Option<Mat<f64>> {
-    let (size, system) = (y.len(), shooting.coordinates.system());
-    let first = shooting.coordinates.size() - system.strains();
-    let strain = |point: usize| {
-        let body = system.bodies().iter().find(|body| body.points.contains(&point));
-        body.map(|body| first + body.strains.start)
-    };
-    // On the side on which nothing slips.
-    let mut aside = y.to_vec();
-    for one in kept.iter().filter(|one| one.touches()) {
-        let by = (DIFFERENCE * one.scale).min(one.inwards().abs()).copysign(one.inwards());
-        if let Some(strain) = strain(one.point) {
-            aside[strain] -= by / one.root;
-        }
-    }
-    shooting.image(&aside)?;
+    let size = y.len();
+    let inside = inwards(shooting, y, kept);
+    shooting.image(&inside)?;
     let mut matrix = shooting.derivative();
     (0..size).for_each(|i| matrix[(i, i)] -= 1.0);
     let mut slipped = shooting.slipped().to_vec();
@@ -192,7 +225,7 @@ fn responses(shooting: &mut Shooting<'_>, y: &[f64], kept: &[Kept]) -> Option<Ma
         (0..size).for_each(|j| matrix[(target, j)] = row.get(j).copied().unwrap_or(0.0));
         for (column, one) in kept.iter().enumerate() {
             right[(target, column)] =
-                if strain(one.point) == Some(target) { 1.0 / one.root } else { 0.0 };
+                if strain(shooting, one.point) == Some(target) { 1.0 / one.root } else { 0.0 };
         }
     }
     matrix.partial_piv_lu().solve_in_place(&mut right);
