@@ -32,7 +32,7 @@ const SURVEY: usize = 2;
 const APART: f64 = 0.04;
 
 /// Evaluations over those of the curve that the points may take in turn, and all of them with the way back.
-const EFFORT: [f64; 2] = [4.0, 4.5];
+const EFFORT: [f64; 2] = [3.6, 4.5];
 
 /// What is tried at a point beside what its neighbour has found.
 #[derive(Debug, Clone, Copy)]
