@@ -25,8 +25,8 @@ use crate::Error;
 const HALVINGS: i32 = 3;
 /// Iterations in which a motion is found, or there is none.
 const ITERATIONS: usize = 20;
-/// Full steps in which a far start leads to a motion.
-const LOOK: usize = 12;
+/// Full steps in which a far start leads to a motion: some, those for every contact, and the most.
+const LOOK: [usize; 3] = [8, 2, 20];
 /// Relative step behind which full steps have come to a motion.
 const ARRIVED: f64 = 1e-2;
 /// Relative step from which on they are compared with the motions that are known, …
@@ -61,8 +61,8 @@ pub(crate) struct SliderBalance<'a> {
     equations: Condensed<'a>,
     observe: &'a [usize],
     settings: NewtonSettings,
-    /// Evaluations after which nothing more is tried.
-    affordable: usize,
+    /// Evaluations and factorisations, after either of which nothing more is tried.
+    affordable: [usize; 2],
     /// The stuck response where no slider is moved.
     stuck: Vec<f64>,
     /// What every slider adds to it per displacement; empty of components without one.
@@ -81,7 +81,7 @@ impl<'a> SliderBalance<'a> {
         omega: f64,
         settings: NewtonSettings,
         observe: &'a [usize],
-        affordable: usize,
+        affordable: [usize; 2],
     ) -> Result<Self, Error> {
         let mut equations = Condensed::new(model, table, Residual::FromRest, true);
         equations.set_omega(omega).map_err(|(_, error)| error)?;
@@ -100,7 +100,8 @@ impl<'a> SliderBalance<'a> {
     }
 
     fn is_spent(&self) -> bool {
-        self.profile().evaluations >= self.affordable
+        let Profile { evaluations, factorisations, .. } = *self.profile();
+        evaluations >= self.affordable[0] || factorisations >= self.affordable[1]
     }
 
     /// Number of components, each of which may have a slider.
@@ -194,7 +195,8 @@ impl<'a> SliderBalance<'a> {
         self.begin_at(sliders);
         let mut x = self.seen(start, sliders);
         let (mut defect, mut step) = (vec![0.0; x.len()], vec![0.0; x.len()]);
-        for _ in 0..LOOK {
+        let [some, each, most] = LOOK;
+        for _ in 0..most.min(some + each * self.equations.model.laws().len()) {
             self.equations.residual(&x, &mut defect);
             if !self.equations.solve(&defect, &mut step) {
                 return None;

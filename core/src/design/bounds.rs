@@ -31,8 +31,11 @@ const SURVEY: usize = 2;
 /// Distance, relative to the frequency, after which motions far from the curve's are looked for again.
 const APART: f64 = 0.04;
 
-/// Evaluations over those of the curve that the points may take in turn, and all of them with the way back.
-const EFFORT: [f64; 2] = [3.6, 4.5];
+/// Evaluations and factorisations over those of the curve that the points may take in turn, and all
+/// of them with the way back.
+const EFFORT: [f64; 2] = [4.0, 4.6];
+
+const UNLIMITED: [usize; 2] = [usize::MAX; 2];
 
 /// What is tried at a point beside what its neighbour has found.
 #[derive(Debug, Clone, Copy)]
@@ -65,8 +68,8 @@ pub(super) struct Search<'a> {
     ranges: BTreeMap<usize, [f64; 2]>,
     /// Points at which motions far from the curve's have been looked for.
     surveys: usize,
-    /// Evaluations after which nothing more is tried.
-    affordable: usize,
+    /// Evaluations and factorisations, after either of which nothing more is tried.
+    affordable: [usize; 2],
     pub(super) profile: Profile,
 }
 
@@ -93,7 +96,7 @@ pub fn bound(
     let start = std::time::Instant::now();
     let tables = tables_of(solution);
     let mut search = Search::new(model, settings, observe, solution, &tables)?;
-    let found = search.along(solution, Some(solution.profile.evaluations), progress)?;
+    let found = search.along(solution, Some(&solution.profile), progress)?;
     for (point, found) in solution.points.iter_mut().zip(&found) {
         if let Some(bounds) = found.bounds() {
             Arc::make_mut(point).bounds = Some(bounds);
@@ -131,20 +134,34 @@ impl<'a> Search<'a> {
         let marched = samples.into_iter().map(|n| Ok((n, Arc::new(model.marched(n)?))));
         let marched = marched.collect::<Result<_, Error>>()?;
         let (ranges, profile) = (BTreeMap::new(), Profile::default());
-        Ok(Self { model, settings, observe, tables, marched, ranges, surveys: 0, affordable: usize::MAX, profile })
+        Ok(Self {
+            model,
+            settings,
+            observe,
+            tables,
+            marched,
+            ranges,
+            surveys: 0,
+            affordable: UNLIMITED,
+            profile,
+        })
     }
 
-    /// Goes along the curve and back; what was found, as far as nobody has ended it. `plain` counts the
-    /// evaluations that the curve has taken, unless they are no measure.
+    /// Goes along the curve and back; what was found, as far as nobody has ended it. `plain` tells
+    /// what the curve has taken, unless that is no measure.
     pub(super) fn along(
         &mut self,
         solution: &Solution,
-        plain: Option<usize>,
+        plain: Option<&Profile>,
         progress: &Progress<'_>,
     ) -> Result<Vec<Found>, Error> {
         let count = solution.points.len();
-        let plain = plain.map_or(f64::INFINITY, |plain| plain as f64);
-        let [forwards, whole] = EFFORT.map(|share| share * plain);
+        let effort = |share: f64| match plain {
+            Some(plain) => [plain.evaluations, plain.factorisations]
+                .map(|count| (share * count as f64) as usize),
+            None => UNLIMITED,
+        };
+        let [forwards, whole] = EFFORT;
         let mut found: Vec<Found> = Vec::with_capacity(count);
         let mut last = f64::NEG_INFINITY;
         for (n, point) in solution.points.iter().enumerate() {
@@ -154,11 +171,11 @@ impl<'a> Search<'a> {
             let corners = n % SURVEY == 0 || n + 1 == count;
             let starts = (point.omega - last).abs() >= APART * point.omega;
             last = if starts { point.omega } else { last };
-            self.affordable = (forwards * (n + 1) as f64 / count as f64) as usize;
+            self.affordable = effort(forwards * (n + 1) as f64 / count as f64);
             let next = self.point(point, found.last(), Survey { corners, starts })?;
             found.push(next);
         }
-        self.affordable = whole as usize;
+        self.affordable = effort(whole);
         for n in (0..found.len().saturating_sub(1)).rev() {
             if !progress(1.0) {
                 break;
@@ -167,7 +184,7 @@ impl<'a> Search<'a> {
             let jump = solution.points[n + 1].jump;
             self.again(&solution.points[n], &mut before[n], &after[0], jump)?;
         }
-        self.affordable = usize::MAX;
+        self.affordable = UNLIMITED;
         Ok(found)
     }
 
@@ -250,7 +267,11 @@ impl<'a> Search<'a> {
         let marched = point.samples.and_then(|samples| self.marched.get(&samples));
         let model = marched.map_or_else(|| self.model.clone(), |m| Evaluated::Made(Arc::clone(m)));
         let newton = self.settings.newton;
-        let left = self.affordable.saturating_sub(self.profile.evaluations);
+        let [evaluations, factorisations] = self.affordable;
+        let left = [
+            evaluations.saturating_sub(self.profile.evaluations),
+            factorisations.saturating_sub(self.profile.factorisations),
+        ];
         let balance = SliderBalance::new(model, table, point.omega, newton, self.observe, left)?;
         Ok(Some(HeldPool { balance, motions: Vec::new() }))
     }
