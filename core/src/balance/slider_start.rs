@@ -23,8 +23,16 @@ use crate::Error;
 
 /// Halvings of the way to other sliders after which there is no motion with them.
 const HALVINGS: i32 = 3;
-/// Iterations in which a far start leads to a motion.
-const LOOK: usize = 30;
+/// Iterations in which a motion is found, or there is none.
+const ITERATIONS: usize = 20;
+/// Full steps in which a far start leads to a motion: some, those for every contact, and the most.
+const LOOK: [usize; 3] = [8, 2, 20];
+/// Relative step behind which full steps have come to a motion.
+const ARRIVED: f64 = 1e-2;
+/// Relative step from which on they are compared with the motions that are known, …
+const NEAR: f64 = 5e-2;
+/// … and the relative distance at which they come to one of them.
+const KNOWN: f64 = 1e-3;
 /// Distance from its limit, relative to its range, at which a slider is free to move: derivatives are
 /// those inwards.
 const INSIDE: f64 = 1e-7;
@@ -53,6 +61,8 @@ pub(crate) struct SliderBalance<'a> {
     equations: Condensed<'a>,
     observe: &'a [usize],
     settings: NewtonSettings,
+    /// Evaluations and factorisations, after either of which nothing more is tried.
+    affordable: [usize; 2],
     /// The stuck response where no slider is moved.
     stuck: Vec<f64>,
     /// What every slider adds to it per displacement; empty of components without one.
@@ -71,11 +81,15 @@ impl<'a> SliderBalance<'a> {
         omega: f64,
         settings: NewtonSettings,
         observe: &'a [usize],
+        affordable: [usize; 2],
     ) -> Result<Self, Error> {
         let mut equations = Condensed::new(model, table, Residual::FromRest, true);
         equations.set_omega(omega).map_err(|(_, error)| error)?;
         let stuck = equations.stuck_response().to_vec();
-        let mut balance = Self { equations, observe, settings, stuck, shifts: Vec::new() };
+        let settings =
+            NewtonSettings { max_iterations: ITERATIONS.min(settings.max_iterations), ..settings };
+        let shifts = Vec::new();
+        let mut balance = Self { equations, observe, settings, affordable, stuck, shifts };
         balance.shifts = (0..balance.count()).map(|slider| balance.shift(slider)).collect();
         Ok(balance)
     }
@@ -83,6 +97,11 @@ impl<'a> SliderBalance<'a> {
     /// Work done so far.
     pub(crate) fn profile(&self) -> &Profile {
         &self.equations.profile
+    }
+
+    fn is_spent(&self) -> bool {
+        let Profile { evaluations, factorisations, .. } = *self.profile();
+        evaluations >= self.affordable[0] || factorisations >= self.affordable[1]
     }
 
     /// Number of components, each of which may have a slider.
@@ -143,6 +162,9 @@ impl<'a> SliderBalance<'a> {
         start: Option<&[f64]>,
         slopes: bool,
     ) -> Option<HeldMotion> {
+        if self.is_spent() {
+            return None;
+        }
         self.begin_at(sliders);
         let mut x = match start {
             Some(u) => self.seen(u, sliders),
@@ -158,13 +180,60 @@ impl<'a> SliderBalance<'a> {
         Some(motion)
     }
 
-    /// [`Self::solve`] from a start that may lead nowhere: a few iterations show whether it does.
-    pub(crate) fn look(&mut self, sliders: &[f64], start: &[f64]) -> Option<HeldMotion> {
-        let settings = self.settings;
-        self.settings.max_iterations = LOOK.min(settings.max_iterations);
-        let found = self.solve(sliders, Some(start), true);
-        self.settings = settings;
-        found
+    /// [`Self::solve`] from a start that is far from any motion, by full Newton steps: every one leads to
+    /// the motion of the states that the contacts have had at the last one. `None` where they come to
+    /// one that is `known`, or to none.
+    pub(crate) fn look(
+        &mut self,
+        sliders: &[f64],
+        start: &[f64],
+        known: &[HeldMotion],
+    ) -> Option<HeldMotion> {
+        if self.is_spent() {
+            return None;
+        }
+        self.begin_at(sliders);
+        let mut x = self.seen(start, sliders);
+        let (mut defect, mut step) = (vec![0.0; x.len()], vec![0.0; x.len()]);
+        let [some, each, most] = LOOK;
+        for _ in 0..most.min(some + each * self.equations.model.laws().len()) {
+            self.equations.residual(&x, &mut defect);
+            if !self.equations.solve(&defect, &mut step) {
+                return None;
+            }
+            x.iter_mut().zip(&step).for_each(|(x, s)| *x -= s);
+            let size = self.vibration(&x);
+            let relative = self.vibration(&step) / size;
+            let comes_to = |other: &HeldMotion| {
+                let apart: Vec<f64> = x.iter().zip(&other.u).map(|(a, b)| a - b).collect();
+                self.vibration(&apart) < KNOWN * size
+            };
+            if relative < NEAR && known.iter().any(comes_to) {
+                return None;
+            }
+            if relative < ARRIVED {
+                let back: Vec<f64> = sliders.iter().map(|w| -w).collect();
+                let start = self.seen(&x, &back);
+                return self.solve(sliders, Some(&start), true);
+            }
+        }
+        None
+    }
+
+    /// Norm of all but the mean.
+    fn vibration(&self, x: &[f64]) -> f64 {
+        let of_components = x.chunks_exact(self.slots());
+        of_components.flat_map(|own| &own[1..]).map(|x| x * x).sum::<f64>().sqrt()
+    }
+
+    /// The response without slip.
+    pub(crate) fn stuck_response(&self) -> &[f64] {
+        &self.stuck
+    }
+
+    /// The last component of every contact: the normal one of those that have one.
+    pub(crate) fn last_components(&self) -> impl Iterator<Item = usize> + '_ {
+        self.equations.model.points().iter().map(|points| points.end - 1)
     }
 
     /// Displacements as they are seen from sliders.

@@ -31,6 +31,12 @@ const SURVEY: usize = 2;
 /// Distance, relative to the frequency, after which motions far from the curve's are looked for again.
 const APART: f64 = 0.04;
 
+/// Evaluations and factorisations over those of the curve that the points may take in turn, and all
+/// of them with the way back.
+const EFFORT: [f64; 2] = [4.0, 4.6];
+
+const UNLIMITED: [usize; 2] = [usize::MAX; 2];
+
 /// What is tried at a point beside what its neighbour has found.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Survey {
@@ -60,6 +66,10 @@ pub(super) struct Search<'a> {
     marched: BTreeMap<usize, Arc<Model>>,
     /// The ranges of all sliders that have been held, as of late.
     ranges: BTreeMap<usize, [f64; 2]>,
+    /// Points at which motions far from the curve's have been looked for.
+    surveys: usize,
+    /// Evaluations and factorisations, after either of which nothing more is tried.
+    affordable: [usize; 2],
     pub(super) profile: Profile,
 }
 
@@ -86,7 +96,7 @@ pub fn bound(
     let start = std::time::Instant::now();
     let tables = tables_of(solution);
     let mut search = Search::new(model, settings, observe, solution, &tables)?;
-    let found = search.along(solution, progress)?;
+    let found = search.along(solution, Some(&solution.profile), progress)?;
     for (point, found) in solution.points.iter_mut().zip(&found) {
         if let Some(bounds) = found.bounds() {
             Arc::make_mut(point).bounds = Some(bounds);
@@ -124,16 +134,34 @@ impl<'a> Search<'a> {
         let marched = samples.into_iter().map(|n| Ok((n, Arc::new(model.marched(n)?))));
         let marched = marched.collect::<Result<_, Error>>()?;
         let (ranges, profile) = (BTreeMap::new(), Profile::default());
-        Ok(Self { model, settings, observe, tables, marched, ranges, profile })
+        Ok(Self {
+            model,
+            settings,
+            observe,
+            tables,
+            marched,
+            ranges,
+            surveys: 0,
+            affordable: UNLIMITED,
+            profile,
+        })
     }
 
-    /// Goes along the curve and back; what was found, as far as nobody has ended it.
+    /// Goes along the curve and back; what was found, as far as nobody has ended it. `plain` tells
+    /// what the curve has taken, unless that is no measure.
     pub(super) fn along(
         &mut self,
         solution: &Solution,
+        plain: Option<&Profile>,
         progress: &Progress<'_>,
     ) -> Result<Vec<Found>, Error> {
         let count = solution.points.len();
+        let effort = |share: f64| match plain {
+            Some(plain) => [plain.evaluations, plain.factorisations]
+                .map(|count| (share * count as f64) as usize),
+            None => UNLIMITED,
+        };
+        let [forwards, whole] = EFFORT;
         let mut found: Vec<Found> = Vec::with_capacity(count);
         let mut last = f64::NEG_INFINITY;
         for (n, point) in solution.points.iter().enumerate() {
@@ -143,16 +171,20 @@ impl<'a> Search<'a> {
             let corners = n % SURVEY == 0 || n + 1 == count;
             let starts = (point.omega - last).abs() >= APART * point.omega;
             last = if starts { point.omega } else { last };
+            self.affordable = effort(forwards * (n + 1) as f64 / count as f64);
             let next = self.point(point, found.last(), Survey { corners, starts })?;
             found.push(next);
         }
+        self.affordable = effort(whole);
         for n in (0..found.len().saturating_sub(1)).rev() {
             if !progress(1.0) {
                 break;
             }
             let (before, after) = found.split_at_mut(n + 1);
-            self.again(&solution.points[n], &mut before[n], &after[0])?;
+            let jump = solution.points[n + 1].jump;
+            self.again(&solution.points[n], &mut before[n], &after[0], jump)?;
         }
+        self.affordable = UNLIMITED;
         Ok(found)
     }
 
@@ -172,7 +204,8 @@ impl<'a> Search<'a> {
             pool.continue_from(from, before.extremes.iter());
         }
         if survey.starts {
-            pool.try_starts(before.and_then(|one| one.nominal.as_ref()));
+            pool.try_starts(self.surveys);
+            self.surveys += 1;
         }
         self.learn(&pool.motions);
         let known: Vec<(usize, [f64; 2])> = self.ranges.iter().map(|(n, r)| (*n, *r)).collect();
@@ -194,18 +227,29 @@ impl<'a> Search<'a> {
         motions.iter().for_each(|motion| self.ranges.extend(motion.held()));
     }
 
-    /// Tries at a point what is extreme at the next one and not here.
-    fn again(&mut self, point: &Point, found: &mut Found, after: &Found) -> Result<(), Error> {
+    /// Tries at a point what is extreme at the next one and not here, and the curve's motion there if
+    /// the curve comes to it from another one.
+    fn again(
+        &mut self,
+        point: &Point,
+        found: &mut Found,
+        after: &Found,
+        jump: bool,
+    ) -> Result<(), Error> {
         let strange = |motion: &HeldMotion| !found.extremes.iter().any(|own| is_like(own, motion));
         let (Some(nominal), Some(from)) = (&found.nominal, &after.nominal) else { return Ok(()) };
+        let other = jump || !is_like(nominal, from);
         let mut others = after.extremes.iter().filter(|motion| strange(motion)).peekable();
-        if others.peek().is_none() {
+        if !other && others.peek().is_none() {
             return Ok(());
         }
         let Some(mut pool) = self.open(point)? else { return Ok(()) };
         pool.motions.push(nominal.clone());
         pool.motions.extend(found.extremes.iter().cloned());
         let known = pool.bounds();
+        if other {
+            pool.look_from(from);
+        }
         pool.continue_from(from, others);
         if pool.is_beyond(&known) {
             let ascents = climb(&mut pool, &found.ascents);
@@ -223,7 +267,12 @@ impl<'a> Search<'a> {
         let marched = point.samples.and_then(|samples| self.marched.get(&samples));
         let model = marched.map_or_else(|| self.model.clone(), |m| Evaluated::Made(Arc::clone(m)));
         let newton = self.settings.newton;
-        let balance = SliderBalance::new(model, table, point.omega, newton, self.observe)?;
+        let [evaluations, factorisations] = self.affordable;
+        let left = [
+            evaluations.saturating_sub(self.profile.evaluations),
+            factorisations.saturating_sub(self.profile.factorisations),
+        ];
+        let balance = SliderBalance::new(model, table, point.omega, newton, self.observe, left)?;
         Ok(Some(HeldPool { balance, motions: Vec::new() }))
     }
 }

@@ -44,7 +44,7 @@ pub fn bound_orbits(
         let curve = sweep(ForcedBalance::new(model, search, observe)?.watched(progress), &omega)?;
         let tables = tables_of(&curve);
         let mut search = Search::new(model, search, observe, &curve, &tables)?;
-        let found = search.along(&curve, progress)?;
+        let found = search.along(&curve, Some(&curve.profile), progress)?;
         for ((orbit, point), found) in solved().zip(&curve.points).zip(&found) {
             if !progress(1.0) {
                 break;

@@ -89,7 +89,7 @@ pub(super) fn bound_peak(
     let curve = Solution { points, half_wave: false, interrupted: false, end, profile };
     let tables = tables_of(&curve);
     let mut search = Search::new(model, settings, &observe, &curve, &tables)?;
-    let found = search.along(&curve, progress)?;
+    let found = search.along(&curve, None, progress)?;
     let pairs = curve.points.into_iter().zip(found);
     let mut places: Vec<Place> = pairs.map(|(point, found)| Place { point, found }).collect();
     let peak = samples[top].knots[0].height;
