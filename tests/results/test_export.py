@@ -99,9 +99,6 @@ def same(mine, theirs):
         assert mine.tolist() == theirs.tolist()
 
 
-# ---------------------------------------------------------------------------------- the tables
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_variable_is_in_one_table_with_its_numbers(kind, results):
@@ -276,42 +273,6 @@ def test_matlab_has_every_bit(kind, results, tmp_path):
         assert str(read["dimensions"][name][0, 0].squeeze()) in (" ".join(variable.dims), "[]")
 
 
-def test_a_universal_file_has_the_receptances(frf, tmp_path):
-    pytest.importorskip("pyuff")
-    frf.export(tmp_path / "a.uff")
-    functions = ss.read_frf(tmp_path / "a.uff")
-    assert [one.dof for one in functions] == list(frf.dofs)
-    for one in functions:
-        mine = ss.Frf.of(frf, one.dof, "tip")
-        assert one.reference == "tip"
-        np.testing.assert_allclose(one.omega, mine.omega, rtol=1e-5)
-        np.testing.assert_allclose(one.values, mine.values, rtol=1e-10)
-
-
-def test_a_universal_file_has_the_functions_of_a_sweep(tmp_path):
-    pyuff = pytest.importorskip("pyuff")
-
-    def curve(model):
-        return ss.forced_response(model, GRID, 3, observe=["damper", "tip"])
-
-    swept = ss.sweep(BEAM, curve, slip_force=["100 N", "246 N"])
-    swept.export(tmp_path / "a.uff")
-    functions = ss.read_frf(tmp_path / "a.uff")
-    pairs = [(about, dof) for about in swept.labels for dof in ("damper", "tip")]
-    assert [(one.about, one.dof) for one in functions] == pairs
-    assert swept.labels[0] == "slip force = 100 N"
-    for number, one in enumerate(functions):
-        mine = ss.Frf.of(swept.results[number // 2], one.dof, "tip")
-        np.testing.assert_allclose(one.values, mine.values, rtol=1e-10)
-    assert not np.allclose(functions[1].values, functions[3].values, rtol=1e-3)
-    sets = pyuff.UFF(str(tmp_path / "a.uff")).read_sets()
-    assert [one["id2"].strip() for one in sets] == [about for about, _ in pairs]
-
-    orbits = ss.sweep(BEAM, lambda model: ss.exact_response(model, GRID[:2]), level=[0.5, 1.0])
-    with pytest.raises(ss.ModelError, match="the result is an exact response; export it"):
-        orbits.export(tmp_path / "b.uff")
-
-
 def test_texts_are_no_formulas(tmp_path):
     openpyxl = pytest.importorskip("openpyxl")
     pytest.importorskip("xlsxwriter")
@@ -376,16 +337,6 @@ def test_what_a_cell_cannot_hold_is_refused(tmp_path, monkeypatch):
     curve = ss.forced_response(ss.Model(structure, [], [ss.Force("a\x01", 1.0)]), [1.0], 1)
     with pytest.raises(ss.ModelError, match="a cell cannot hold"):
         curve.export(tmp_path / "a.xlsx")
-
-
-def test_response_functions_are_those_of_one_force(results, tmp_path):
-    pytest.importorskip("pyuff")
-    with pytest.raises(ss.ModelError, match="the result is a transient; export it"):
-        results["transient"].export(tmp_path / "a.uff")
-    forces = [ss.Force("tip", 1.0), ss.Force("damper", 1.0)]
-    both = ss.forced_response(ss.Model(BEAM.structure, BEAM.contacts, forces), GRID, 1)
-    with pytest.raises(ss.ModelError, match="2 degrees of freedom have a force"):
-        both.export(tmp_path / "a.uff")
 
 
 @pytest.mark.slow

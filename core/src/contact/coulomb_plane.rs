@@ -240,8 +240,7 @@ impl<'a> March<'a> {
     /// Where the excess becomes positive. It may begin at zero and fall first.
     fn crossing(&self, start: f64, end: f64, slider: [f64; 2]) -> f64 {
         let of = |theta: f64| excess(self.at(theta), slider);
-        let mut low = start;
-        let [value, slope] = of(start);
+        let (mut low, [value, slope]) = (start, of(start));
         let limit = self.at(start)[2][0];
         if value >= -AT_LIMIT * limit * limit {
             if slope > self.at_rest() * limit {

@@ -18,6 +18,7 @@ mod loop_disturbance;
 mod microslip;
 mod modal_system;
 mod output;
+mod pace;
 mod phase;
 mod polynomial;
 mod power_series;

@@ -3,6 +3,7 @@
 use super::bodies::{Bodies, Body};
 use super::damping::Damping;
 use super::microslip::Microslip;
+use super::pace::{dof_rates, rate_of};
 use super::projection::Projection;
 use crate::contact::{Bound, PointState, PointSummary, SlipPlane};
 use crate::model::Model;
@@ -239,7 +240,7 @@ impl ModalSystem {
         if ratio <= fastest {
             return Ok(());
         }
-        let rates = Self::dof_rates(model);
+        let rates = dof_rates(model);
         let fastest = |a: &usize, b: &usize| rates[*a].total_cmp(&rates[*b]);
         let dof = (0..rates.len()).max_by(fastest).unwrap_or(0);
         Err(Error::TooFast { dof, ratio, omega })
@@ -247,20 +248,7 @@ impl ModalSystem {
 
     /// The least rate at which a DOF that is held moves while all others are fixed [1/s].
     pub(super) fn slowest_dof(&self, model: &Model) -> f64 {
-        Self::dof_rates(model).into_iter().filter(|rate| *rate > 0.0).fold(self.rate, f64::min)
-    }
-
-    /// Rates at which the DOFs move while all others are fixed [1/s].
-    fn dof_rates(model: &Model) -> Vec<f64> {
-        let structure = model.structure();
-        let rows = &model.ports().rows;
-        let held = rows.transpose() * model.contact_stiffness() * rows;
-        let rate = |dof: usize| {
-            let mass = structure.mass()[(dof, dof)];
-            let stiffness = structure.stiffness()[(dof, dof)] + held[(dof, dof)];
-            (stiffness.abs() / mass).sqrt() + structure.damping()[(dof, dof)].abs() / mass
-        };
-        (0..structure.mass().nrows()).map(rate).collect()
+        dof_rates(model).into_iter().filter(|rate| *rate > 0.0).fold(self.rate, f64::min)
     }
 
     /// Displacement of DOF `dof` per modal coordinate.
@@ -381,15 +369,6 @@ impl ContactState {
         }
         regime
     }
-}
-
-/// Fastest rate of the free motion [1/s].
-fn rate_of(model: &Model, damping: &ModalDamping) -> f64 {
-    // No natural frequency tells of the substitutes of DOFs without mass.
-    let rates = ModalSystem::dof_rates(model);
-    let squares = model.structure().massless().iter().map(|&dof| rates[dof].powi(2));
-    let highest = model.compliance().stuck_frequencies().last().copied().unwrap_or(0.0);
-    highest.max(squares.sum::<f64>().sqrt()) + damping.matrix().norm_l2()
 }
 
 fn is_zero(load: &[c64]) -> bool {

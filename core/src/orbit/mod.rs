@@ -8,6 +8,7 @@ mod cycle_branch;
 mod cycle_orbits;
 mod cycles;
 mod drift;
+mod fundamental_matrix;
 mod later_begin;
 mod limit_cycle;
 mod linear_path;
