@@ -8,9 +8,12 @@ use stickslip_core::fourier::{Harmonics, SampleTable};
 /// One harmonic of a series: order, cosine and sine coefficient.
 pub type Term = (usize, f64, f64);
 
-/// Motions with their names: the highest harmonic, whether the second half is the mirror image of the
-/// first one, the series, and what stuck contacts hold.
-pub const STATES: [(&str, (usize, bool), &[Term], Residual); 10] = [
+/// A motion with its name: the highest harmonic, whether the second half is the mirror image of the first
+/// one, the series, and what stuck contacts hold.
+pub type NamedMotion = (&'static str, (usize, bool), &'static [Term], Residual);
+
+/// One of every state of a contact.
+pub const STATES: [NamedMotion; 10] = [
     ("slip twice", ODD, ONCE, Residual::Centred),
     ("slip in several windows", ODD, OFTEN, Residual::Centred),
     ("gross slip", ODD, &[(1, 300.0, 40.0), (3, 2.0, 1.0)], Residual::Centred),
