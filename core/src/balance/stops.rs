@@ -31,7 +31,8 @@ pub(super) fn stops(
             balance.scale.counts(position) && reach[dof] > size
         })
     };
-    let counts = |one: &&Resonance| one.forced || one.reach.as_ref().is_none_or(rises);
+    let counts =
+        |one: &&Resonance| one.forced || !one.partial && one.reach.as_ref().is_none_or(rises);
     let mut stops: Vec<(f64, f64)> = resonances
         .iter()
         .filter(counts)

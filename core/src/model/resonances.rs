@@ -34,6 +34,8 @@ pub struct Resonance {
     pub unbounded: bool,
     /// Whether the load itself excites that harmonic.
     pub forced: bool,
+    /// Whether points slip in a part of the period there: where it lies is a guess.
+    pub partial: bool,
 }
 
 impl Model {
@@ -73,6 +75,7 @@ impl Model {
                     reach: None,
                     unbounded: false,
                     forced: is_forced,
+                    partial: false,
                 }));
                 continue;
             };
@@ -99,6 +102,7 @@ impl Model {
                             reach: Some(reach.clone()),
                             unbounded: !damped && state.all && driven > bearing.friction(state, j),
                             forced: is_forced,
+                            partial: state.carried > 0.0,
                         });
                     }
                 }
