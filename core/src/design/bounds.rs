@@ -33,7 +33,7 @@ const APART: f64 = 0.04;
 
 /// Evaluations and factorisations over those of the curve that the points may take in turn, and all
 /// of them with the way back.
-const EFFORT: [f64; 2] = [4.0, 4.6];
+const EFFORT: [f64; 2] = [4.3, 4.9];
 
 const UNLIMITED: [usize; 2] = [usize::MAX; 2];
 
