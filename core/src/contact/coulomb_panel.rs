@@ -17,7 +17,7 @@ const ROUNDING: f64 = 1e-15;
 const SHRINKING: f64 = 1e-2;
 /// Last coefficients of the polynomial of φ that count as none, relative to the largest limit. Values
 /// at the end and integrals are good to the square of this.
-pub(super) const RESOLVED: f64 = 2e-10;
+pub(super) const RESOLVED: f64 = 5e-11;
 /// The same where the end alone matters.
 pub(super) const ROUGHLY: f64 = 1e-6;
 /// The same for what a panel can add to an integral, whatever its order.
@@ -78,7 +78,7 @@ impl Panel {
         };
         panel.evaluate([cos, sin]);
         let mut factors = panel.factors();
-        let (mut last, mut shrunk) = (1.0, 1.0_f64);
+        let (mut last, mut shrunk) = (f64::INFINITY, 1.0_f64);
         for iteration in 0..STEPS {
             // One matrix serves as long as the steps shrink fast.
             if iteration > 0 && (shrunk.is_nan() || shrunk >= SHRINKING) {
@@ -98,9 +98,8 @@ impl Panel {
                 return None;
             }
             panel.evaluate([cos, sin]);
-            // What a step leaves is smaller than itself by as much as it was than the one before; the first
-            // leaves its square.
-            shrunk = largest / last;
+            // What a step leaves is smaller than itself by as much as it was than the one before.
+            shrunk = if last.is_finite() { largest / last } else { 1.0 };
             last = largest;
             if largest * shrunk.min(1.0) <= ROUNDING {
                 panel.finish(plane);
