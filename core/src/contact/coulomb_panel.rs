@@ -17,7 +17,7 @@ const ROUNDING: f64 = 1e-15;
 const SHRINKING: f64 = 1e-2;
 /// Last coefficients of the polynomial of φ that count as none, relative to the largest limit. Values
 /// at the end and integrals are good to the square of this.
-pub(super) const RESOLVED: f64 = 5e-11;
+pub(super) const RESOLVED: f64 = 2e-10;
 /// The same where the end alone matters.
 pub(super) const ROUGHLY: f64 = 1e-6;
 /// The same for what a panel can add to an integral, whatever its order.
