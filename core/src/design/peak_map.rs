@@ -159,18 +159,15 @@ impl Search<'_> {
             let error = solved.map(|point| point.error_estimate[0]).fold(0.0, f64::max);
             let [change, left] = SETTLED.map(|share| share * tolerance * amplitude);
             if (amplitude - before).abs() <= change && error <= left {
-                return Ok(CellPeak {
-                    omega,
-                    amplitude,
-                    harmonics,
-                    status: PointStatus::Converged,
-                });
+                let status = PointStatus::Converged;
+                return Ok(CellPeak { omega, amplitude, harmonics, status });
             }
             // A peak that has wandered off is followed before the grid narrows.
             step *= if near[0] < omega && omega < near[last] { 0.5 } else { 1.0 };
             (centre, before, known) = (omega, amplitude, points);
         }
-        Ok(CellPeak::missing(harmonics, PointStatus::HarmonicsLimit))
+        let status = PointStatus::HarmonicsLimit;
+        Ok(CellPeak { omega: centre, amplitude: before, harmonics, status })
     }
 
     fn balance(&self, harmonics: usize) -> Result<ForcedBalance<'_>, Error> {

@@ -38,7 +38,8 @@ class DesignMap:
     def status(self) -> tuple[tuple[Status, ...], ...]:
         """How each search ended, row by row; ``status[i][j].advice`` says what to do about it.
 
-        A peak with the status "harmonics limit" was given up, and is nan.
+        A peak with the status "harmonics limit" is that of the most harmonics there may be: more of
+        them would still change it by more than the tolerance.
         """
         return tuple(tuple(map(Status.from_code, row)) for row in self.codes.tolist())
 
