@@ -9,6 +9,7 @@ use crate::watch::whole;
 use numpy::PyArray2;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use std::collections::HashMap;
 use std::sync::Arc;
 use stickslip_core::balance::Settings;
 use stickslip_core::design::bound_orbits;
@@ -60,7 +61,9 @@ pub fn exact_response<'py>(
         },
         |mut points| {
             // Pieces of the sweep come as they are found.
-            points.sort_by_key(|orbit| order.iter().position(|own| *own == orbit.response.omega));
+            let places = order.iter().enumerate().rev().map(|(place, own)| (own.to_bits(), place));
+            let places: HashMap<u64, usize> = places.collect();
+            points.sort_by_key(|orbit| places.get(&orbit.response.omega.to_bits()).copied());
             let half_wave = model.is_symmetric() && settings.residual.is_symmetric();
             let profile = Profile::default();
             (!points.is_empty()).then_some(Orbits { points, half_wave, interrupted: true, profile })

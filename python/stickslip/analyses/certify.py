@@ -91,12 +91,20 @@ def _interrupted(
     result: ForcedResponse, exact: ExactResponse, indices: Int, apart: Float, followed: int
 ) -> Interrupted:
     """Return the exception that holds the orbits so far, whose waveforms may be missing."""
-    certificate = _certificate(result, exact, indices[: exact.arrays.omega.size], apart)
+    certificate = _certificate(result, exact, _found(result, exact, indices), apart)
     return Interrupted(
         f"certification interrupted after {exact.arrays.omega.size} of {indices.size} points, "
         f"{followed} of them over the whole period, which the result of this exception holds",
         replace(result, certificate=certificate),
     )
+
+
+def _found(result: ForcedResponse, exact: ExactResponse, indices: Int) -> Int:
+    """Return the points of which an orbit was found; parts of a sweep are followed at a time."""
+    places: dict[float, list[int]] = {}
+    for index in indices[::-1].tolist():
+        places.setdefault(float(result.omega[index]), []).append(index)
+    return np.array([places[omega].pop() for omega in exact.arrays.omega.tolist()], dtype=np.int64)
 
 
 def _comparison(
