@@ -246,7 +246,10 @@ def test_an_interrupted_run_keeps_its_points(tmp_path):
     assert partial.interrupted
     assert 0 < partial.omega.size < 4000
     assert partial.converged.all()
-    np.testing.assert_array_equal(partial.omega, grid[: partial.omega.size])
+    # Parts of the sweep are followed at a time: the last one of them may have left a gap.
+    places = np.searchsorted(grid, partial.omega)
+    np.testing.assert_array_equal(partial.omega, grid[places])
+    assert (np.diff(places) > 0).all()
     last = ss.exact_response(snecma_beam(), partial.omega[-1:])
     assert len(partial.events(-1)) == len(last.events(0))
     assert any("interrupted after" in text for text in partial.assumptions)
