@@ -221,6 +221,7 @@ pub fn uniqueness_code(unique: Option<Uniqueness>) -> u8 {
         Some(Uniqueness::Shakedown) => 2,
         None => 3,
         Some(Uniqueness::NotFound) => 4,
+        Some(Uniqueness::NotDecided) => 5,
     }
 }
 

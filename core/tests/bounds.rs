@@ -141,6 +141,18 @@ fn random_residuals_lie_inside() {
 }
 
 #[test]
+fn a_search_that_may_cost_nothing_claims_nothing() {
+    let model = rubbing(&mut Random(7)).model();
+    let mut solution = curve(&model, Residual::Centred, &[0]);
+    solution.profile.evaluations = 0;
+    bound(&model, settings(Residual::Centred), &[0], false, &mut solution, &|_| true).unwrap();
+    let found = solution.points.iter().filter_map(|point| point.bounds.as_ref());
+    let words: Vec<Uniqueness> = found.map(|bounds| bounds.unique).collect();
+    assert!(words.contains(&Uniqueness::NotDecided), "{words:?}");
+    assert!(!words.contains(&Uniqueness::Unique), "{words:?}");
+}
+
+#[test]
 fn the_interval_is_that_of_a_grid_of_sliders() {
     let mut random = Random(11);
     let mut compared = 0;

@@ -63,3 +63,16 @@ def test_vibrations_beside_that_of_the_curve_lie_inside(benchmark, seed, at):
     assert len(settled) >= 2
     assert max(settled) <= upper * 1.002
     assert min(settled) >= lower / 1.002
+
+
+@pytest.mark.parametrize("seed", [2, 3, 4, 12])
+def test_a_frequency_by_itself_is_searched_as_well_as_in_a_curve(benchmark, seed):
+    model = benchmark.system(np.random.default_rng(seed))
+    natural = np.sort(ss.natural_frequencies(model))
+    grid = np.linspace(0.6 * natural[0], 1.15 * natural[2], 12)
+    how = {"harmonics": 9, "observe": ["a.x"], "residual": "bounds", "stability": False}
+    curve = ss.forced_response(model, grid, **how)
+    assert (curve.unique != "yes").any()
+    for at in np.flatnonzero(curve.unique != "yes"):
+        alone = ss.forced_response(model, [grid[at]], **how)
+        assert alone.unique[0] != "yes"

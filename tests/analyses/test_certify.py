@@ -1,6 +1,8 @@
 """Certificates: the true error of a harmonic balance, at chosen and at random points."""
 
 import pickle
+from dataclasses import replace
+from importlib import import_module
 
 import numpy as np
 import pytest
@@ -330,3 +332,18 @@ def test_a_disk_is_certified_in_part_after_an_interruption():
     with pytest.raises(ss.Interrupted, match=r"interrupted after \d+ of 3000 points") as it:
         ss.certify(curve, "all", progress=stop)
     assert 0 < it.value.result.certificate.indices.size < 3000
+
+
+def test_points_are_named_where_an_interruption_left_gaps(coarse, certified, monkeypatch):
+    found = [0, 1, 2, 30]
+
+    def orbits_at(model, omega, *_):
+        partial = ss.exact_response(model, omega[found], observe=coarse.dofs)
+        return replace(partial, interrupted=True)
+
+    monkeypatch.setattr(import_module("stickslip.analyses.certify"), "orbits_at", orbits_at)
+    with pytest.raises(ss.Interrupted, match="after 4 of 51 points") as it:
+        ss.certify(coarse, "all")
+    certificate = it.value.result.certificate
+    assert certificate.indices.tolist() == found
+    np.testing.assert_allclose(certificate.error, certified.certificate.error[found], rtol=1e-6)

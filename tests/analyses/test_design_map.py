@@ -7,18 +7,12 @@ import pytest
 from matplotlib.figure import Figure
 
 import stickslip as ss
+from wedges import WEDGE
 
-WEDGE = ss.WedgeDamper(
-    angle=60.0,
-    mass=0.1,
-    friction=0.2,
-    tangential_stiffness=3e5,
-    normal_stiffness=3e5,
-    load=240.0,
-)
+FLAT = replace(WEDGE, angle=60.0, friction=0.2)
 
 
-def pair(mass=0.1, angle=60.0, wedge=WEDGE):
+def pair(mass=0.1, angle=60.0, wedge=FLAT):
     blades = (
         ss.Structure(10.0 * np.eye(2), stiffness, 100.0 * np.eye(2), ["x", "y"])
         for stiffness in ([[1e6, -9e5], [-9e5, 1e6]], [[4e5, -3e5], [-3e5, 4e5]])

@@ -1,5 +1,6 @@
 """Study files with dampers as bodies."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.study import Study
+from wedges import WEDGE
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "wedge-damper" / "study.toml"
 SECTOR = """
@@ -41,14 +43,7 @@ omega = [200]
 
 def test_example_is_the_wedge_between_two_blades():
     model = Study.load(EXAMPLE).model
-    wedge = ss.WedgeDamper(
-        angle=60.0,
-        mass=0.1,
-        friction=0.2,
-        tangential_stiffness=3e5,
-        normal_stiffness=3e5,
-        load=240.0,
-    )
+    wedge = replace(WEDGE, angle=60.0, friction=0.2)
     blades = (
         ss.Structure(10.0 * np.eye(2), stiffness, 100.0 * np.eye(2), ["x", "y"])
         for stiffness in ([[1e6, -9e5], [-9e5, 1e6]], [[4e5, -3e5], [-3e5, 4e5]])

@@ -63,6 +63,8 @@ pub(crate) struct SliderBalance<'a> {
     settings: NewtonSettings,
     /// Evaluations and factorisations, after either of which nothing more is tried.
     affordable: [usize; 2],
+    /// Whether something was not tried for that.
+    pub(crate) cut: bool,
     /// The stuck response where no slider is moved.
     stuck: Vec<f64>,
     /// What every slider adds to it per displacement; empty of components without one.
@@ -89,7 +91,8 @@ impl<'a> SliderBalance<'a> {
         let settings =
             NewtonSettings { max_iterations: ITERATIONS.min(settings.max_iterations), ..settings };
         let shifts = Vec::new();
-        let mut balance = Self { equations, observe, settings, affordable, stuck, shifts };
+        let cut = false;
+        let mut balance = Self { equations, observe, settings, affordable, cut, stuck, shifts };
         balance.shifts = (0..balance.count()).map(|slider| balance.shift(slider)).collect();
         Ok(balance)
     }
@@ -99,9 +102,11 @@ impl<'a> SliderBalance<'a> {
         &self.equations.profile
     }
 
-    fn is_spent(&self) -> bool {
+    fn is_spent(&mut self) -> bool {
         let Profile { evaluations, factorisations, .. } = *self.profile();
-        evaluations >= self.affordable[0] || factorisations >= self.affordable[1]
+        let spent = evaluations >= self.affordable[0] || factorisations >= self.affordable[1];
+        self.cut |= spent;
+        spent
     }
 
     /// Number of components, each of which may have a slider.

@@ -56,6 +56,8 @@ pub enum Uniqueness {
     Shakedown,
     /// An orbit with other residual tractions was not found.
     NotFound,
+    /// No other vibration was found, but the search had to end before it was through.
+    NotDecided,
 }
 
 /// Bounds of the half ranges of the observed DOFs over all residual tractions that Coulomb allows.
@@ -75,6 +77,15 @@ impl AmplitudeBounds {
     /// Those of the only vibration.
     pub(crate) fn unique(amplitude: Vec<f64>, proved: bool) -> Self {
         Self { lower: amplitude.clone(), upper: amplitude, unique: Uniqueness::Unique, proved }
+    }
+
+    /// The same, found by a search that was `cut` short: an only vibration may have others beside it.
+    #[must_use]
+    pub(crate) fn by_search(mut self, cut: bool) -> Self {
+        if cut && self.unique == Uniqueness::Unique {
+            self.unique = Uniqueness::NotDecided;
+        }
+        self
     }
 
     /// Those of so many DOFs that were not found.

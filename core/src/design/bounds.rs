@@ -35,6 +35,9 @@ const APART: f64 = 0.04;
 /// of them with the way back.
 const EFFORT: [f64; 2] = [4.3, 4.9];
 
+/// Points of a curve from which on its effort is a measure: of fewer a search of one point is not paid.
+const SHARING: usize = 6;
+
 const UNLIMITED: [usize; 2] = [usize::MAX; 2];
 
 /// What is tried at a point beside what its neighbour has found.
@@ -54,6 +57,8 @@ pub(super) struct Found {
     /// The motions that are extreme in some DOF, largest and least.
     pub(super) extremes: Vec<HeldMotion>,
     ascents: Vec<Ascent>,
+    /// Whether the search had to end before it was through.
+    pub(super) cut: bool,
 }
 
 /// Bounds of all points of a curve.
@@ -156,7 +161,7 @@ impl<'a> Search<'a> {
         progress: &Progress<'_>,
     ) -> Result<Vec<Found>, Error> {
         let count = solution.points.len();
-        let effort = |share: f64| match plain {
+        let effort = |share: f64| match plain.filter(|_| count >= SHARING) {
             Some(plain) => [plain.evaluations, plain.factorisations]
                 .map(|count| (share * count as f64) as usize),
             None => UNLIMITED,
@@ -251,10 +256,12 @@ impl<'a> Search<'a> {
             pool.look_from(from);
         }
         pool.continue_from(from, others);
+        let cut = found.cut;
         if pool.is_beyond(&known) {
             let ascents = climb(&mut pool, &found.ascents);
             *found = Found::of(&pool, ascents);
         }
+        found.cut = cut || pool.balance.cut;
         self.profile.add(pool.balance.profile());
         Ok(())
     }
@@ -279,13 +286,14 @@ impl<'a> Search<'a> {
 
 impl Found {
     fn of(pool: &HeldPool<'_>, ascents: Vec<Ascent>) -> Self {
-        Self { nominal: pool.motions.first().cloned(), extremes: pool.extremes(), ascents }
+        let (nominal, cut) = (pool.motions.first().cloned(), pool.balance.cut);
+        Self { nominal, extremes: pool.extremes(), ascents, cut }
     }
 
     pub(super) fn bounds(&self) -> Option<AmplitudeBounds> {
         let nominal = self.nominal.as_ref()?;
         let others = self.extremes.iter().map(|motion| motion.amplitude.as_slice());
-        Some(between(&nominal.amplitude, nominal.pushed, others))
+        Some(between(&nominal.amplitude, nominal.pushed, others).by_search(self.cut))
     }
 }
 

@@ -89,7 +89,8 @@ fn of_orbit(
         }
     }
     let own = orbit.half_ranges();
-    Ok(Some(between(&own, nominal.pushed, others.iter().map(Vec::as_slice))))
+    let bounds = between(&own, nominal.pushed, others.iter().map(Vec::as_slice));
+    Ok(Some(bounds.by_search(found.cut)))
 }
 
 /// Whether an orbit leaves the sliders that a motion leaves, and no other ones of the nominal motion.

@@ -195,7 +195,8 @@ def bounds_of(arrays: Arrays | DamperArrays, variant: str = "bounds") -> Diagnos
         return None
     if arrays.guaranteed[known].all():
         return told("bounds/unique")
-    wide = int((arrays.unique[known] != UNIQUE.index("yes")).sum())
+    depends = UNIQUE.index("no"), UNIQUE.index("shakedown")
+    wide = int(np.isin(arrays.unique[known], depends).sum())
     return told(variant, points=wide, _known=int(known.sum()))
 
 

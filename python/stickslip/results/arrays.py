@@ -42,7 +42,7 @@ Measure: TypeAlias = Literal["half_range", "max", "fundamental"]
 STABILITY = ("unstable", "stable", "not decided")
 """What is known of the stability of a motion."""
 
-UNIQUE = ("yes", "no", "shakedown", "not asked", "not found")
+UNIQUE = ("yes", "no", "shakedown", "not asked", "not found", "not decided")
 """Whether a vibration depends on the tractions that the past has left in contacts."""
 
 SHARE = 1.0 + 1e-6

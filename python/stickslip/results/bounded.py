@@ -62,8 +62,9 @@ class Bounded(ContactMotion):
 
         "yes" (the bounds coincide: no other vibration was found, and where `guaranteed` is true
         there is none), "no" (it depends on them), "shakedown" (it does, and the motion itself has
-        pushed a contact in one sense until it slips no more), "not found" (of an exact orbit: one
-        of those that bound it was not found) or "not asked".
+        pushed a contact in one sense until it slips no more), "not decided" (no other vibration was
+        found before the effort that a curve may cost was spent; ask for the frequency by itself),
+        "not found" (of an exact orbit: one of those that bound it was not found) or "not asked".
         """
         return constant(np.array(UNIQUE)[self.arrays.unique])
 

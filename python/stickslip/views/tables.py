@@ -95,7 +95,7 @@ def bound_rows(result: ForcedResponse | DamperCurve) -> list[Row]:
     """Say how far the past may have left residual tractions that change the result."""
     if not result.bounded:
         return []
-    names = ("yes", "no", "shakedown", "not found")
+    names = ("yes", "no", "shakedown", "not decided", "not found")
     counts = {name: int((result.unique == name).sum()) for name in names}
     said = ", ".join(f"{count} {name}" for name, count in counts.items() if count)
     kind = "guaranteed" if result.guaranteed[result.unique != "not asked"].all() else "inner"
