@@ -94,7 +94,7 @@ def test_speed_changes_loads_and_stiffness():
     np.testing.assert_allclose(found.amplitude, 3.0 / np.abs(dynamic), rtol=1e-12)
     np.testing.assert_array_equal(found.omega, omega)
     spun = [
-        pair(wedge=replace(WEDGE, load=ss.Centrifugal(radius=0.4, speed=speed))).forces[0]
+        pair(wedge=replace(FLAT, load=ss.Centrifugal(radius=0.4, speed=speed))).forces[0]
         for speed in speeds
     ]
     np.testing.assert_allclose([one.amplitude for one in spun], 0.1 * 0.4 * speeds**2)
