@@ -112,8 +112,9 @@ def _excel(result: Exported, file: Path, table: str | None) -> memoryview:
         frame, meanings = tables[name], tables[name].attrs["meanings"]
         units = frame.attrs["units"].items()
         columns += [[title, name, column, unit, meanings[column]] for column, unit in units]
-        _fill(book.add_worksheet(title), file, [list(headed(frame))])
-        _fill(book.get_worksheet_by_name(title), file, frame.itertuples(index=False), first=1)
+        sheet = book.add_worksheet(title)
+        _fill(sheet, file, [headed(frame)])
+        _fill(sheet, file, frame.itertuples(index=False), first=1)
     _fill(about, file, columns)
     book.close()
     return content.getbuffer()
