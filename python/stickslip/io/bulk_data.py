@@ -1,15 +1,18 @@
-"""What the reader of meshes does not tell of Nastran's bulk data: numbers and sets of nodes."""
+"""Nastran's bulk data: its cards, and what the reader of meshes does not tell of them.
+
+That is numbers and sets of nodes.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Container, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 from stickslip.io.source import plain
 
-_WIDTHS = {False: 8, True: 16}
-"""Columns of a field, in small and in large format."""
+_HEAD, _TAIL = 8, 8
+"""Columns of the name of a card, and of the mark of its continuation."""
 
 
 @dataclass(frozen=True)
@@ -35,13 +38,14 @@ def read_bulk(file: Path) -> Bulk:
     numbers: list[int] = []
     sets: dict[str, list[range]] = {}
     lines = plain(file.read_bytes(), "latin-1").splitlines()
-    for name, fields in _entries(lines):
+    for name, fields in cards(lines, ("GRID", "SET1")):
         if name == "GRID":
             numbers.append(int(fields[0]))
-            system = fields[1] if len(fields) > 1 else ""
-            if system not in ("", "0"):
-                raise ValueError(f"GRID {fields[0]}: its coordinates are those of system {system}")
-        elif name == "SET1":
+            if fields[1] not in ("", "0"):
+                raise ValueError(
+                    f"GRID {fields[0]}: its coordinates are those of system {fields[1]}"
+                )
+        else:
             own = sets.setdefault(f"SET1 {int(fields[0])}", [])
             own.extend(_members([one for one in fields[1:] if one]))
     return Bulk(numbers, sets)
@@ -62,33 +66,33 @@ def _members(words: list[str]) -> Iterator[range]:
             at += 1
 
 
-def _entries(lines: list[str]) -> Iterator[tuple[str, list[str]]]:
-    """Give each entry of the two kinds with its fields, those of continuations included."""
+def cards(lines: Iterable[str], names: Container[str]) -> Iterator[tuple[str, list[str]]]:
+    """Give each card of some names with its fields, those of continuations included."""
     found: tuple[str, list[str]] | None = None
     for line in lines:
-        text = line.partition("$")[0].rstrip()
+        text = line.partition("$")[0].expandtabs().rstrip()
         if not text:
             continue
-        head, fields = _fields(text)
-        if head.startswith(("+", "*")) or not head:
+        head = (text.partition(",")[0] if "," in text else text[:_HEAD]).strip()
+        if head and head[0] not in "+*":
             if found:
-                found[1].extend(fields)
-            continue
+                yield found
+            name = head.rstrip("*").upper()
+            found = (name, []) if name in names else None
         if found:
-            yield found
-        name = head.rstrip("*").upper()
-        found = (name, fields) if name in ("GRID", "SET1") else None
+            found[1].extend(_fields(text))
     if found:
         yield found
 
 
-def _fields(text: str) -> tuple[str, list[str]]:
-    """Return the first field of a line and those with data, without the mark of a continuation."""
+def _fields(text: str) -> list[str]:
+    """Return the fields of a line with data, without its name and the mark of a continuation."""
     if "," in text:
-        head, *fields = (word.strip() for word in text.split(","))
-        return head, fields[:8]
-    text = text.expandtabs(8)
-    head = text[:8].strip()
-    wide = head.endswith("*") or head.startswith("*")
-    width = _WIDTHS[wide]
-    return head, [text[at : at + width].strip() for at in range(8, min(len(text), 72), width)]
+        _, *words = map(str.strip, text.split(","))
+        if any(words[9:]):
+            raise ValueError(f"line {text[:40]!r} is longer than a card")
+        return [*words, *[""] * 8][:8]
+    width, count = (16, 4) if "*" in text[:_HEAD] else (8, 8)
+    if len(text) > _HEAD + width * count + _TAIL:
+        raise ValueError(f"line {text[:40]!r} is longer than a card")
+    return [text[at : at + width].strip() for at in range(_HEAD, _HEAD + width * count, width)]

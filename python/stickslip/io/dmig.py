@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
+from stickslip.io.bulk_data import cards
 from stickslip.io.entries import Labelled, Sparse, node_names, square_matrix, whole_matrix
 from stickslip.io.numbers import real_field, whole_field
 from stickslip.io.source import Key, read_text
@@ -40,7 +39,7 @@ def read_dmig(path: Path, key: Key) -> Labelled:
     """
     text = read_text(path, ended=True)
     matrices: dict[str, _Entries] = {}
-    for fields in _cards(text.splitlines()):
+    for _, fields in cards(text.splitlines(), ("DMIG",)):
         name = fields[0].upper()
         if fields[1] == "0":
             if name in matrices:
@@ -57,36 +56,6 @@ def read_dmig(path: Path, key: Key) -> Labelled:
     made = {name: _matrix(name, entries, index) for name, entries in matrices.items()}
     chosen = Key(path, key.name and key.name.upper()).among(made)
     return Labelled(made[chosen], node_names(*zip(*used, strict=True)) if used else ())
-
-
-def _cards(lines: list[str]) -> Iterator[list[str]]:
-    """Yield the fields of each DMIG card, continuations joined."""
-    card: list[str] | None = None
-    for line in lines:
-        line = line.split("$")[0].expandtabs().rstrip()
-        if not line:
-            continue
-        if line[0] not in "*+ ,":
-            if card is not None:
-                yield card
-            card = [] if re.match(r"DMIG\b", line, re.I) else None
-        if card is not None:
-            card += _fields(line)
-    if card is not None:
-        yield card
-
-
-def _fields(line: str) -> list[str]:
-    if "," in line:
-        _, *words = map(str.strip, line.split(","))
-        if any(words[9:]):
-            raise ValueError(f"line {line[:40]!r} is longer than a card")
-        return [*words, *[""] * 8][:8]
-    wide = "*" in line[:8]
-    width, count = (16, 4) if wide else (8, 8)
-    if len(line) > 8 + width * count + 8:
-        raise ValueError(f"line {line[:40]!r} is longer than a card")
-    return [line[at : at + width].strip() for at in range(8, 8 + width * count, width)]
 
 
 def _add_column(entries: _Entries, fields: list[str]) -> None:
