@@ -5,6 +5,7 @@ import inspect
 import pickle
 from inspect import isabstract
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 import pytest
@@ -15,7 +16,7 @@ from stickslip.calls import checked
 from stickslip.errors import CallError
 from stickslip.reference import snecma_beam
 from stickslip.study import Study
-from stickslip.study.analysis import KINDS
+from stickslip.study.analysis import AnyAnalysis
 
 BEAM = snecma_beam()
 FRF = ss.forced_response(BEAM, [170.0, 180.0], 3)
@@ -340,8 +341,9 @@ def test_the_advice_for_all_sectors_works():
 def test_all_kinds_are_listed():
     with pytest.raises(ss.ModelError, match="unknown kind 'swing'; known: ") as refusal:
         run(('"forced-response"', '"swing"'))
-    assert len(KINDS) >= 9
-    for kind in KINDS:
+    kinds = get_args(AnyAnalysis)[1].tables
+    assert len(kinds) >= 9
+    for kind in kinds:
         assert repr(kind) in str(refusal.value)
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import reduce
+from operator import or_
 from typing import Annotated, Any, Literal, TypeAlias, TypeVar, get_args
 
 import numpy as np
@@ -272,19 +274,27 @@ class Table(BaseModel):
         return data
 
 
-def chosen_by(key: str, *choices: str, default: str | None = None) -> Discriminator:
-    """Let the value of one key choose the class of a table."""
+class ByKey:
+    """One of several tables, which the value of one of their keys chooses."""
 
-    def choose(table: object) -> Hashable:
-        value = table.get(key, default) if isinstance(table, Mapping) else getattr(table, key, None)
-        return f"<{value}>"
+    def __init__(self, key: str, *tables: type[Table], default: str | None = None) -> None:
+        self.key, self.default = key, default
+        self.tables = {get_args(one.model_fields[key].annotation)[0]: one for one in tables}
 
-    return Discriminator(
-        choose,
-        custom_error_type="unknown_choice",
-        custom_error_message="unknown",
-        custom_error_context={"key": key, "choices": " ".join(choices)},
-    )
+    def __get_pydantic_core_schema__(self, _: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        tables: Any = (Annotated[one, Tag(f"<{name}>")] for name, one in self.tables.items())
+        chosen = Discriminator(
+            self._choice,
+            custom_error_type="unknown_choice",
+            custom_error_message="unknown",
+            custom_error_context={"key": self.key, "choices": " ".join(self.tables)},
+        )
+        return handler.generate_schema(Annotated[reduce(or_, tables), chosen])
+
+    def _choice(self, table: object) -> Hashable:
+        if isinstance(table, Mapping):
+            return f"<{table.get(self.key, self.default)}>"
+        return f"<{getattr(table, self.key, None)}>"
 
 
 def _form(value: object) -> Hashable:

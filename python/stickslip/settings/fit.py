@@ -2,46 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
-from pydantic import BeforeValidator, Field
+from pydantic import Field
 
-from stickslip.checks import brief, text
+from stickslip.checks import brief
 from stickslip.errors import EntryError
 from stickslip.settings.balance import HarmonicSettings
 from stickslip.settings.entries import ONE_OF, Count, Tolerance, Within, percent
-from stickslip.settings.ranges import Or
+from stickslip.settings.ranges import by_parameter
 from stickslip.settings.variation import unit_of
 from stickslip.units import physical_number
 
 
-def _bounds(given: object) -> dict[str, tuple[float, float]]:
-    if not isinstance(given, Mapping) or not given:
-        raise EntryError("", f": {brief(given)}; give {{'friction': (0.1, 1.0), ...}}")
-    found = {}
-    for name, ends in given.items():
-        text(name, "parameters: name")
-        if not isinstance(ends, tuple | list) or len(ends) != 2:
-            raise EntryError("", f"[{name!r}]: {brief(ends)}; give two bounds, (lowest, highest)")
-        try:
-            low, high = (physical_number(end, unit_of(name), "") for end in ends)
-        except EntryError as error:
-            raise EntryError("", f"[{name!r}]{error.said}") from None
-        if not low < high:
-            raise EntryError("", f"[{name!r}]: ({low:g}, {high:g}); give lowest < highest")
-        found[str(name)] = (low, high)
-    return found
+def _ends(name: str, ends: object) -> tuple[float, float]:
+    if not isinstance(ends, tuple | list) or len(ends) != 2:
+        raise EntryError("", f": {brief(ends)}; give two bounds, (lowest, highest)")
+    low, high = (physical_number(end, unit_of(name), "") for end in ends)
+    if not low < high:
+        raise EntryError("", f": ({low:g}, {high:g}); give lowest < highest")
+    return low, high
 
 
 _Bounds = Annotated[
     dict[str, tuple[float, float]],
-    Or(
-        Annotated[dict[str, Any], BeforeValidator(_bounds)],
-        "Mapping[str, tuple[float, float]]",
-        "mapping of str to (float, float)",
-        _bounds,
-    ),
+    by_parameter(_ends, "'friction': (0.1, 1.0)", "tuple[float, float]", "(float, float)"),
 ]
 
 

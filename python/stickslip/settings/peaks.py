@@ -34,6 +34,7 @@ from stickslip.settings.ranges import (
     PeakSpan,
     numbers,
 )
+from stickslip.settings.settings import Settings
 from stickslip.settings.sweep import ParameterKeys
 from stickslip.settings.variation import ContactKeys, Parameter, Variation, unit_of
 from stickslip.units import physical_number
@@ -166,7 +167,28 @@ class DamperSettings(_FollowedPeak):
     )
 
 
-class MistuningKeys(PeakSettings):
+class StoredKeys(Settings):
+    """What a study does that keeps its results as they come."""
+
+    store: StorePath | None = Field(
+        default=None,
+        description="File in which the results are kept as they come. If there is one of the same "
+        "study already, with as many patterns or samples, deviations and couplings or with others, "
+        "only what is missing is computed: a run that was stopped, however rudely, goes on where "
+        "it was. Default: none, and beside the result of a study file.",
+    )
+    portion: Portion = Field(
+        default=(0, 1),
+        description="Which part of the patterns or samples this run computes, (0, 4) the first of "
+        "four: for job arrays, with a store each. `merge_stores` joins them.",
+        examples=[[0, 4]],
+    )
+    threads: Count | None = Field(
+        default=None, description="Threads. Default: as many as there are processors."
+    )
+
+
+class MistuningKeys(StoredKeys, PeakSettings):
     """How the disks of a mistuning study are made and computed."""
 
     deviation: _Deviations = Field(
@@ -193,13 +215,6 @@ class MistuningKeys(PeakSettings):
         "disk.",
         examples=[["1e3 N/m", "1e4 N/m"]],
     )
-    store: StorePath | None = Field(
-        default=None,
-        description="File in which the results are kept as they come. If there is one of the same "
-        "study already, with as many patterns, deviations and couplings or with others, only what "
-        "is missing is computed: a run that was stopped, however rudely, goes on where it was. "
-        "Default: none, and beside the result of a study file.",
-    )
     seed: Index = Field(
         default=0,
         description="Of the patterns drawn. Pattern i of a seed is the same however many there "
@@ -208,15 +223,6 @@ class MistuningKeys(PeakSettings):
     distribution: _Distribution = Field(
         default="normal",
         description="Distribution of zero mean and unit deviation of the patterns drawn.",
-    )
-    portion: Portion = Field(
-        default=(0, 1),
-        description="Which part of the patterns this run computes, (0, 4) the first of four: for "
-        "job arrays, with a store each. `merge_stores` joins them.",
-        examples=[[0, 4]],
-    )
-    threads: Count | None = Field(
-        default=None, description="Threads. Default: as many as there are processors."
     )
 
 

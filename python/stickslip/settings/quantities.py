@@ -8,11 +8,11 @@ from typing import Annotated, Any, ClassVar, Literal, TypeAlias, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
-from pydantic import Field, PlainSerializer, Tag
+from pydantic import Field, PlainSerializer
 
 from stickslip.checks import brief, choice, real_number, set_fields, text, whole_number
 from stickslip.errors import EntryError, ModelError
-from stickslip.settings.entries import Dof, Factor, Index, Measure, Some, Table, chosen_by, span_of
+from stickslip.settings.entries import ByKey, Dof, Factor, Index, Measure, Some, Table, span_of
 from stickslip.settings.ranges import Or, PeakSpan, numbers, positive
 from stickslip.settings.variation import Parameter
 
@@ -221,16 +221,10 @@ def _spec(quantity: Quantity) -> dict[str, Any]:
     return {"kind": quantity.kind, **asdict(quantity)}
 
 
-_Tables = Annotated[
-    Annotated[HighestPeakTable, Tag("<highest-peak>")]
-    | Annotated[OptimumTable, Tag("<optimum>")]
-    | Annotated[BackboneTable, Tag("<backbone>")],
-    chosen_by("kind", *_KINDS),
-]
 AnyQuantity = Annotated[
     Quantity,
     Or(
-        _Tables,
+        Annotated[Table, ByKey("kind", HighestPeakTable, OptimumTable, BackboneTable)],
         "HighestPeak | Optimum | Backbone",
         "HighestPeak, Optimum or Backbone",
         _quantity,

@@ -11,6 +11,7 @@ from typing import Annotated, Any, Generic, Literal, Self, TypeAlias, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import (
+    BeforeValidator,
     Discriminator,
     Field,
     GetCoreSchemaHandler,
@@ -21,7 +22,7 @@ from pydantic import (
 )
 from pydantic_core import core_schema
 
-from stickslip.checks import brief
+from stickslip.checks import brief, text
 from stickslip.errors import EntryError
 from stickslip.settings.entries import (
     CALL,
@@ -81,6 +82,25 @@ class Or:
                 lambda value: value.tolist() if isinstance(value, np.ndarray) else value
             ),
         )
+
+
+def by_parameter(read: Callable[[str, object], Any], example: str, takes: str, said: str) -> Or:
+    """Take something of each of several parameters, by their names."""
+
+    def read_all(given: object) -> dict[str, Any]:
+        if not isinstance(given, Mapping) or not given:
+            raise EntryError("", f": {brief(given)}; give {{{example}, ...}}")
+        found = {}
+        for name, one in given.items():
+            text(name, "parameters: name")
+            try:
+                found[str(name)] = read(name, one)
+            except EntryError as error:
+                raise EntryError("", f"[{name!r}]{error}") from None
+        return found
+
+    written = Annotated[dict[str, Any], BeforeValidator(read_all)]
+    return Or(written, f"Mapping[str, {takes}]", f"mapping of str to {said}", read_all)
 
 
 # ------------------------------------------------------------------------------------------- calls

@@ -6,15 +6,15 @@ from collections.abc import Mapping
 from functools import cache
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field
+from pydantic import Field
 
-from stickslip.checks import brief, real_number, text, unknown
+from stickslip.checks import brief, real_number, unknown
 from stickslip.errors import EntryError
 from stickslip.settings.balance import HarmonicSettings
 from stickslip.settings.entries import ONE_OF, Count, Index
-from stickslip.settings.peaks import Portion, StorePath
+from stickslip.settings.peaks import StoredKeys
 from stickslip.settings.quantities import AnyQuantity
-from stickslip.settings.ranges import Or
+from stickslip.settings.ranges import by_parameter
 
 if TYPE_CHECKING:
     from scipy.stats.distributions import rv_frozen
@@ -34,7 +34,7 @@ def distribution(spec: Mapping[str, Any]) -> rv_frozen[Any, Any]:
     return found
 
 
-def _spec_of(given: object) -> dict[str, Any]:
+def _spec_of(_: str, given: object) -> dict[str, Any]:
     """Return the name of a distribution with its shape parameters, location and scale."""
     from scipy import stats
 
@@ -84,27 +84,9 @@ def _known() -> tuple[str, ...]:
     return tuple(name for name, one in vars(stats).items() if isinstance(one, stats.rv_continuous))
 
 
-def _distributions(given: object) -> dict[str, dict[str, Any]]:
-    if not isinstance(given, Mapping) or not given:
-        raise EntryError("", f': {brief(given)}; give {{"friction": stats.uniform(0.2, 0.4), ...}}')
-    found = {}
-    for name, one in given.items():
-        text(name, "parameters: name")
-        try:
-            found[str(name)] = _spec_of(one)
-        except EntryError as error:
-            raise EntryError("", f"[{name!r}]{error}") from None
-    return found
-
-
 _Distributions = Annotated[
     dict[str, dict[str, Any]],
-    Or(
-        Annotated[dict[str, Any], BeforeValidator(_distributions)],
-        "Mapping[str, object]",
-        "mapping of str to distribution",
-        _distributions,
-    ),
+    by_parameter(_spec_of, '"friction": stats.uniform(0.2, 0.4)', "object", "distribution"),
 ]
 
 
@@ -132,21 +114,5 @@ class SampledSettings(HarmonicSettings):
     )
 
 
-class UncertaintyKeys(SampledSettings):
+class UncertaintyKeys(StoredKeys, SampledSettings):
     """How the quantity of a model with uncertain parameters is computed."""
-
-    store: StorePath | None = Field(
-        default=None,
-        description="File in which samples are kept as they come. If there is one of the same "
-        "study already, only what is missing is computed. Default: none, and beside the result of "
-        "a study file.",
-    )
-    portion: Portion = Field(
-        default=(0, 1),
-        description="Which part of the samples this run computes, (0, 4) the first of four: for "
-        "job arrays, with a store each. `merge_stores` joins them.",
-        examples=[[0, 4]],
-    )
-    threads: Count | None = Field(
-        default=None, description="Threads. Default: as many as there are processors."
-    )

@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from functools import reduce
-from operator import or_
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal, Self, get_args
+from typing import Annotated, Any, ClassVar, Literal, Self
 
-from pydantic import Field, GetCoreSchemaHandler, Tag, model_validator
-from pydantic_core import CoreSchema
+from pydantic import Field, model_validator
 
 from stickslip.analyses.basin_map import basin_map
 from stickslip.analyses.campbell import campbell
@@ -36,7 +33,7 @@ from stickslip.results.result import Result
 from stickslip.settings.balance import BalanceKeys
 from stickslip.settings.campbell import CampbellKeys
 from stickslip.settings.cycles import CycleKeys
-from stickslip.settings.entries import Factor, Some, Table, chosen_by
+from stickslip.settings.entries import ByKey, Factor, Some, Table
 from stickslip.settings.fit import FitSettings
 from stickslip.settings.flutter import FlutterKeys
 from stickslip.settings.modes import ModeKeys
@@ -189,36 +186,35 @@ class OptimalDamperTable(OptimumKeys, AnalysisTable):
     dof_keys = ("dof",)
 
 
-class CampbellTable(CampbellKeys, AnalysisTable):
+class FrequencyTable(CampbellKeys, AnalysisTable):
+    """Natural frequencies, and what engine orders excite."""
+
+    analysis: ClassVar = campbell
+    of_speed: ClassVar = True
+    dof_keys = ()
+
+
+class CampbellTable(FrequencyTable):
     """Natural frequencies over the speed of rotation, and where engine orders meet them."""
 
     kind: Literal["campbell"] = Field(description="The analysis.")
     diagram: Literal["campbell"] = Field(default="campbell", description="What is drawn.")
-    analysis: ClassVar = campbell
-    of_speed: ClassVar = True
-    dof_keys = ()
 
 
-class SafeTable(CampbellKeys, AnalysisTable):
+class SafeTable(FrequencyTable):
     """Natural frequencies over the nodal diameter, and what engine orders excite at a speed."""
 
     kind: Literal["safe"] = Field(description="The analysis.")
     diagram: Literal["safe"] = Field(default="safe", description="What is drawn.")
-    analysis: ClassVar = campbell
-    of_speed: ClassVar = True
-    dof_keys = ()
 
 
-class NodalDiametersTable(CampbellKeys, AnalysisTable):
+class NodalDiametersTable(FrequencyTable):
     """Natural frequencies over the nodal diameter."""
 
     kind: Literal["nodal-diameters"] = Field(description="The analysis.")
     diagram: Literal["nodal-diameters"] = Field(
         default="nodal-diameters", description="What is drawn."
     )
-    analysis: ClassVar = campbell
-    of_speed: ClassVar = True
-    dof_keys = ()
 
 
 class SpeedResponseTable(SpeedKeys, AnalysisTable):
@@ -328,9 +324,10 @@ class FlutterMapTable(FlutterKeys, FlowKeys, AnalysisTable):
         return flutter_map(model, self.flow, settings=self, progress=progress)
 
 
-KINDS: Mapping[str, type[AnalysisTable]] = {
-    get_args(table.model_fields["kind"].annotation)[0]: table
-    for table in (
+AnyAnalysis = Annotated[
+    AnalysisTable,
+    ByKey(
+        "kind",
         ForcedResponseTable,
         ExactTable,
         TransientTable,
@@ -350,15 +347,7 @@ KINDS: Mapping[str, type[AnalysisTable]] = {
         UncertaintyTable,
         NonlinearModesTable,
         FlutterMapTable,
-    )
-}
-"""Each further analysis has a table of its own here."""
-
-
-class ByKind:
-    """An analysis whose key `kind` chooses the table."""
-
-    def __get_pydantic_core_schema__(self, _: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        tables: Any = (Annotated[table, Tag(f"<{kind}>")] for kind, table in KINDS.items())
-        chosen = chosen_by("kind", *KINDS, default="forced-response")
-        return handler.generate_schema(Annotated[reduce(or_, tables), chosen])
+        default="forced-response",
+    ),
+]
+"""Each further analysis joins these with a table of its own."""

@@ -6,7 +6,7 @@ from abc import abstractmethod
 from collections.abc import Callable
 from typing import Annotated, ClassVar, Literal, Self
 
-from pydantic import BeforeValidator, Field, Strict, Tag, model_validator
+from pydantic import BeforeValidator, Field, Strict, model_validator
 
 from stickslip.checks import brief
 from stickslip.errors import EntryError, ModelError
@@ -24,6 +24,7 @@ from stickslip.model import (
 from stickslip.model.contact import Contact
 from stickslip.settings.entries import (
     ONE_OF,
+    ByKey,
     CubicStiffness,
     Dof,
     Friction,
@@ -37,7 +38,6 @@ from stickslip.settings.entries import (
     StiffnessValue,
     Table,
     Text,
-    chosen_by,
 )
 from stickslip.study.matrices import Rows
 
@@ -313,26 +313,18 @@ class StructuralTable(LawTable):
 
 
 ContactTable = Annotated[
-    Annotated[JenkinsTable, Tag("<jenkins>")]
-    | Annotated[ParallelJenkinsTable, Tag("<parallel-jenkins>")]
-    | Annotated[IwanTable, Tag("<iwan>")]
-    | Annotated[MasingTable, Tag("<masing>")]
-    | Annotated[BoucWenTable, Tag("<bouc-wen>")]
-    | Annotated[StructuralTable, Tag("<structural>")]
-    | Annotated[CoulombTable, Tag("<coulomb>")]
-    | Annotated[StopTable, Tag("<stop>")]
-    | Annotated[CubicTable, Tag("<cubic>")],
-    chosen_by(
+    LawTable,
+    ByKey(
         "law",
-        "jenkins",
-        "parallel-jenkins",
-        "iwan",
-        "masing",
-        "bouc-wen",
-        "structural",
-        "coulomb",
-        "stop",
-        "cubic",
+        JenkinsTable,
+        ParallelJenkinsTable,
+        IwanTable,
+        MasingTable,
+        BoucWenTable,
+        StructuralTable,
+        CoulombTable,
+        StopTable,
+        CubicTable,
     ),
 ]
-"""Each further friction law joins this union with a table of its own."""
+"""Each further friction law joins these with a table of its own."""

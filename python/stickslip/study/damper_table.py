@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
-from pydantic import Field, Tag
+from pydantic import Field
 
 from stickslip.damper import (
     Centrifugal,
@@ -19,6 +19,7 @@ from stickslip.damper import (
 from stickslip.settings.entries import (
     ONE_OF,
     Angle,
+    ByKey,
     Dof,
     Friction,
     Inertia,
@@ -31,7 +32,6 @@ from stickslip.settings.entries import (
     StiffnessValue,
     Table,
     Text,
-    chosen_by,
 )
 
 
@@ -139,9 +139,5 @@ class StripTable(DamperTable):
 
 
 DamperKind = Annotated[
-    Annotated[WedgeTable, Tag("<wedge>")]
-    | Annotated[CylinderTable, Tag("<cylinder>")]
-    | Annotated[SplitTable, Tag("<split>")]
-    | Annotated[StripTable, Tag("<strip>")],
-    chosen_by("kind", "wedge", "cylinder", "split", "strip"),
+    DamperTable, ByKey("kind", WedgeTable, CylinderTable, SplitTable, StripTable)
 ]

@@ -23,7 +23,7 @@ from stickslip.settings.entries import (
     Table,
 )
 from stickslip.settings.sweep import SweepKeys
-from stickslip.study.analysis import AnalysisTable, ByKind
+from stickslip.study.analysis import AnyAnalysis
 from stickslip.study.contact_table import ContactTable
 from stickslip.study.damper_table import DamperKind
 from stickslip.study.disk_table import CouplingTable, DiskTable
@@ -124,7 +124,7 @@ class StudyTables(Table):
         default=(),
         description="Springs between two DOFs; of a disk, between neighbouring sectors.",
     )
-    analysis: Annotated[AnalysisTable, ByKind()] = Field(description="What to compute.")
+    analysis: AnyAnalysis = Field(description="What to compute.")
     sweep: SweepTable | None = Field(
         default=None,
         description="Computes the analysis along a parameter; left out: of the model as written.",
