@@ -58,26 +58,6 @@ def _samples(dataset: Stored) -> Int:
     return np.full(dataset.sizes["omega"], samples, np.int64)
 
 
-def _unknown(dataset: Stored) -> Float:
-    return np.full_like(dataset["error_estimate"].values, np.nan)
-
-
-def _nowhere(dataset: Stored) -> Bool:
-    return np.zeros(dataset.sizes["omega"], np.bool_)
-
-
-def _unbounded(dataset: Stored) -> Float:
-    return np.full(tuple(dataset.sizes[name] for name in ("omega", "dof")), np.nan)
-
-
-def _not_asked(dataset: Stored) -> Code:
-    return np.full(dataset.sizes["omega"], UNIQUE.index("not asked"), np.uint8)
-
-
-def _undecided(dataset: Stored) -> Code:
-    return np.full(dataset.sizes["omega"], STABILITY.index("not decided"), np.uint8)
-
-
 class PeriodicArrays(Columns):
     """The numbers of periodic motions, along a curve or a branch.
 
@@ -163,47 +143,47 @@ class Arrays(PeriodicArrays):
     residual: Float = column("*", "1", "relative residual of the balance equations", least=0.0)
     iterations: Int = column("*", "1", "iterations of the solver", least=0)
     fold: Bool = column(
-        "*", "1", "whether the curve turns back in frequency at the point", absent=_nowhere
+        "*", "1", "whether the curve turns back in frequency at the point", absent=False
     )
     jump: Bool = column(
-        "*", "1", "whether the sweep has come to the point from another branch", absent=_nowhere
+        "*", "1", "whether the sweep has come to the point from another branch", absent=False
     )
     stability: Code = column(
-        "*", "1", "whether the motion is stable", codes=STABILITY, absent=_undecided
+        "*", "1", "whether the motion is stable", codes=STABILITY, absent="not decided"
     )
     lower: Float = column(
         "* dof",
         "m",
         "least half range over the residual tractions",
         least=0.0,
-        absent=_unbounded,
+        absent=np.nan,
     )
     upper: Float = column(
         "* dof",
         "m",
         "largest half range over the residual tractions",
         least=0.0,
-        absent=_unbounded,
+        absent=np.nan,
     )
     unique: Code = column(
         "*",
         "1",
         "whether the vibration is the same for all residual tractions",
         codes=UNIQUE,
-        absent=_not_asked,
+        absent="not asked",
     )
     guaranteed: Bool = column(
         "*",
         "1",
         "whether theory excludes half ranges outside of the bounds",
-        absent=_nowhere,
+        absent=False,
     )
     sampling_error: Float = column(
         "* dof",
         "m",
         "part of the error estimate that is due to samples of marched friction laws",
         least=0.0,
-        absent=_unknown,
+        absent=np.nan,
     )
 
     @classmethod

@@ -31,18 +31,6 @@ class LeastPeak(NamedTuple):
     """Its amplitude [m]."""
 
 
-def _unbounded(dataset: Stored) -> Float:
-    return np.full(dataset.sizes["value"], np.nan)
-
-
-def _not_asked(dataset: Stored) -> Code:
-    return np.full(dataset.sizes["value"], UNIQUE.index("not asked"), np.uint8)
-
-
-def _nowhere(dataset: Stored) -> Bool:
-    return np.zeros(dataset.sizes["value"], np.bool_)
-
-
 class DamperArrays(Columns):
     """The numbers of a damper curve."""
 
@@ -61,20 +49,20 @@ class DamperArrays(Columns):
     at_edge: Bool = column("value", "1", "whether the peak lies at an end of the range")
     status: Code = column("value", "1", "how the value ended", codes=Status)
     lower: Float = column(
-        "value", "m", "least peak over the residual tractions", least=0.0, absent=_unbounded
+        "value", "m", "least peak over the residual tractions", least=0.0, absent=np.nan
     )
     upper: Float = column(
-        "value", "m", "largest peak over the residual tractions", least=0.0, absent=_unbounded
+        "value", "m", "largest peak over the residual tractions", least=0.0, absent=np.nan
     )
     unique: Code = column(
         "value",
         "1",
         "whether the peak is the same for all residual tractions",
         codes=UNIQUE,
-        absent=_not_asked,
+        absent="not asked",
     )
     guaranteed: Bool = column(
-        "value", "1", "whether theory excludes peaks outside of the bounds", absent=_nowhere
+        "value", "1", "whether theory excludes peaks outside of the bounds", absent=False
     )
 
     @cached_property

@@ -51,6 +51,10 @@ _TYPES: Mapping[str, tuple[type[np.generic], ...]] = {
 """Types of the entries, by the annotation of a column."""
 
 
+Absent: TypeAlias = float | str | Callable[[Stored], NDArray[Any]]
+"""What stands for a column that older files do not have."""
+
+
 class _Column(NamedTuple):
     """What is known of a column; see `column`."""
 
@@ -61,7 +65,7 @@ class _Column(NamedTuple):
     most: float | str
     file_name: str | None
     codes: Sequence[str]
-    absent: Callable[[Stored], NDArray[Any]] | None
+    absent: Absent | None
     optional: bool
 
 
@@ -81,7 +85,7 @@ def column(
     most: float | str = inf,
     file_name: str | None = None,
     codes: Iterable[str] = (),
-    absent: Callable[[Stored], NDArray[Any]] | None = None,
+    absent: Absent | None = None,
     optional: bool = False,
 ) -> Any:
     """Return a field of `Columns`.
@@ -99,8 +103,9 @@ def column(
         Name of the variable. Default: that of the field.
     codes : iterable of str, optional
         What the entries stand for, counted from 0.
-    absent : callable, optional
-        How an older file without the variable gives the entries, by its other variables.
+    absent : float, str or callable, optional
+        What all entries of an older file without the variable are, a number or one of the codes; or
+        what makes them of its other variables.
     optional : bool, optional
         Whether the first dimension may be missing.
     """
@@ -192,6 +197,7 @@ class Columns:
         """
         arrays: dict[str, Any] = {}
         for name, entry in cls.table().items():
+            kinds = _TYPES[str(cls.__dataclass_fields__[name].type)]
             stored = cls.prefix + (entry.file_name or name)
             # xarray would count the entries of a dimension without numbers.
             if stored in dataset.variables:
@@ -199,11 +205,10 @@ class Columns:
                 dims = tuple(map(str, variable.dims))
                 if dims != entry.dims and not (entry.optional and dims == entry.dims[1:]):
                     raise ValueError(f"{stored} has dimensions {dims} instead of {entry.dims}")
-                kinds = _TYPES[str(cls.__dataclass_fields__[name].type)]
                 _require(stored, variable.values, entry, kinds, dataset.sizes)
                 arrays[name] = variable.values
             elif entry.absent is not None:
-                arrays[name] = entry.absent(dataset)
+                arrays[name] = _stand_in(entry, entry.absent, kinds[0], dataset)
             else:
                 raise KeyError(stored)
         return cls(**arrays, **more)
@@ -246,6 +251,16 @@ def _about(cls: type[Columns], name: str) -> str:
     entry = cls.table()[name]
     unit = "" if entry.unit == "1" or "{" in entry.unit else f" [{entry.unit}]"
     return f"{entry.meaning[0].upper()}{entry.meaning[1:]}{unit}."
+
+
+def _stand_in(
+    entry: _Column, absent: Absent, kind: type[np.generic], dataset: Stored
+) -> NDArray[Any]:
+    """Return the entries of a column that an older file does not have."""
+    if callable(absent):
+        return absent(dataset)
+    value = entry.codes.index(absent) if isinstance(absent, str) else absent
+    return np.full([dataset.sizes[name] for name in entry.dims], value, kind)
 
 
 def _require(

@@ -96,7 +96,7 @@ class FlutterArrays(Columns):
         "1",
         "error of the amplitude, relative to the solution of the whole equations",
         least=0.0,
-        absent=lambda data: np.full(data.sizes["cycle"], np.nan),
+        absent=np.nan,
     )
     cycle_displacement: Float = column(
         "cycle dof", "m", "half peak-to-peak amplitude of a displacement"

@@ -39,7 +39,7 @@ class ModeArrays(PeriodicArrays):
         "*",
         "1",
         "multiple of the forces of harmonic 1 that keep the motion up in quadrature",
-        absent=lambda file: np.full(file["omega"].values.shape, np.nan),
+        absent=np.nan,
     )
     relative_error: Float = column(
         "* mode_entry",

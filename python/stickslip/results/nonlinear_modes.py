@@ -257,10 +257,4 @@ class NonlinearModes(PeriodicMotions):
         return constant(found[0]), constant(found[1])
 
     def _further_variables(self, *, derived: bool) -> dict[Hashable, Any]:
-        if not derived:
-            return {}
-        values = np.stack([self.displacement_amplitude(dof) for dof in self.dofs], axis=1)
-        meaning = "half peak-to-peak amplitude of the displacement"
-        return {
-            "amplitude": ((self.arrays.along, "dof"), values, {"units": "m", "long_name": meaning})
-        }
+        return self._amplitude_variable(self.displacement_amplitude) if derived else {}

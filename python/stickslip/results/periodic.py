@@ -121,12 +121,7 @@ class PeriodicMotions(ColumnResult):
         return int(index) % count
 
     def _further_variables(self, *, derived: bool) -> dict[Hashable, Any]:
-        if not derived:
-            return {}
-        meaning = "half peak-to-peak amplitude of the displacement"
-        values = np.stack([self.amplitude(dof) for dof in self.dofs], axis=1)
-        dims = (self.arrays.along, "dof")
-        return {"amplitude": (dims, values, {"units": "m", "long_name": meaning})}
+        return self._amplitude_variable(self.amplitude) if derived else {}
 
 
 class Sweep(PeriodicMotions):

@@ -329,6 +329,14 @@ class ColumnResult(Result):
         """Return the variables that are no columns, with or without those that can be derived."""
         return {}
 
+    def _amplitude_variable(
+        self, amplitude: Callable[[str], Float], along: str = "", of: str = "of the displacement"
+    ) -> dict[Hashable, Any]:
+        """Return the amplitudes of the observed degrees of freedom as a variable."""
+        values = np.stack([amplitude(dof) for dof in self.dofs], axis=1)
+        about = {"units": "m", "long_name": f"half peak-to-peak amplitude {of}"}
+        return {"amplitude": ((along or self.arrays.along, "dof"), values, about)}
+
     @classmethod
     def _further_arguments(cls, dataset: Stored) -> dict[str, Any]:
         """Return what `_further_variables` wrote and cannot be derived."""

@@ -274,9 +274,7 @@ class Transient(ColumnResult):
     def _further_variables(self, *, derived: bool) -> dict[Hashable, Any]:
         if not derived:
             return {}
-        meaning = "half peak-to-peak amplitude in each period"
-        values = np.stack([self.amplitudes(dof) for dof in self.dofs], axis=1)
-        return {"amplitude": (("period", "dof"), values, {"units": "m", "long_name": meaning})}
+        return self._amplitude_variable(self.amplitudes, "period", "in each period")
 
     def _whole(self, motion: Float, periods: int) -> Float:
         """Return the samples of the last whole periods, without the instant that ends them."""
