@@ -6,6 +6,7 @@
 use super::law::HarmonicForce;
 use super::parameter::number;
 use super::return_map::ReturnMapJacobian;
+use super::spring::{harmonics_of_a_spring, law_of_a_spring};
 use super::{
     ContactLaw, Describing, Motion, Parameter, Parameters, Phase, PointState, PointSummary,
     SlipLoad,
@@ -53,6 +54,14 @@ impl Cubic {
         2.0 / count as f64
     }
 
+    fn force(&self, u: f64) -> f64 {
+        self.stiffness * u.powi(3)
+    }
+
+    fn slope(&self, u: f64) -> f64 {
+        3.0 * self.stiffness * u * u
+    }
+
     /// Series of `u³` times the stiffness, added with a sign.
     fn add_force(&self, motion: Motion<'_>, sign: f64, out: &mut [f64]) {
         let harmonics = motion.table.harmonics();
@@ -78,16 +87,10 @@ impl Cubic {
 }
 
 impl ContactLaw for Cubic {
+    law_of_a_spring!();
+
     fn name(&self) -> &'static str {
         "cubic"
-    }
-
-    fn displacements(&self) -> usize {
-        1
-    }
-
-    fn state_size(&self) -> usize {
-        0
     }
 
     /// That at rest: none.
@@ -95,37 +98,8 @@ impl ContactLaw for Cubic {
         Mat::zeros(1, 1)
     }
 
-    fn state_stiffness(&self) -> Mat<f64> {
-        Mat::zeros(0, 1)
-    }
-
     fn is_odd(&self) -> bool {
         true
-    }
-
-    /// The force grows with the displacement, but not with the velocity: that does not make the motion
-    /// unique.
-    fn is_monotone(&self) -> bool {
-        false
-    }
-
-    fn limits(&self) -> Vec<f64> {
-        vec![f64::INFINITY]
-    }
-
-    fn return_map(
-        &self,
-        _before: &[f64],
-        after: &[f64],
-        _state: &mut [f64],
-        force: &mut [f64],
-        jacobian: Option<&mut ReturnMapJacobian>,
-    ) {
-        let u = after[0];
-        force[0] = self.stiffness * u.powi(3);
-        let Some(jacobian) = jacobian else { return };
-        jacobian.reset(1, 0);
-        jacobian.force_by_after[0] = 3.0 * self.stiffness * u * u;
     }
 
     fn with_scaled_stiffness(&self, share: f64) -> Box<dyn ContactLaw> {
@@ -145,10 +119,6 @@ impl ContactLaw for Cubic {
         Ok(Box::new(Self::new(value)?))
     }
 
-    fn closed_form(&self) -> Option<&dyn HarmonicForce> {
-        Some(self)
-    }
-
     /// `3/4 k A²`.
     fn describing(&self, amplitude: f64) -> Option<Describing> {
         let real = |value: f64| c64::new(value, 0.0);
@@ -161,6 +131,8 @@ impl ContactLaw for Cubic {
 }
 
 impl HarmonicForce for Cubic {
+    harmonics_of_a_spring!();
+
     fn slip_load(&self, motion: Motion<'_>, tangent: bool, out: &mut SlipLoad) {
         let harmonics = motion.table.harmonics();
         out.reset(harmonics.slots(), tangent);
@@ -173,24 +145,6 @@ impl HarmonicForce for Cubic {
             }
         }
         out.active = self.stiffness != 0.0;
-    }
-
-    fn summary(&self, _motion: Motion<'_>, out: &mut [PointSummary]) {
-        out.fill(PointSummary::default());
-    }
-
-    fn state_history(&self, _motion: Motion<'_>, _samples: usize) -> Vec<f64> {
-        Vec::new()
-    }
-
-    fn force_history(&self, motion: Motion<'_>, samples: usize) -> Vec<f64> {
-        let harmonics = motion.table.harmonics();
-        let at = |n: usize| harmonics.jet(motion.displacement, TAU * n as f64 / samples as f64)[0];
-        (0..samples).map(|n| self.stiffness * at(n).powi(3)).collect()
-    }
-
-    fn phases(&self, _motion: Motion<'_>) -> Vec<Phase> {
-        vec![Phase { start: 0.0, states: vec![PointState::Stuck] }]
     }
 
     fn parameter_slope(&self, motion: Motion<'_>, _index: usize, out: &mut [f64]) {

@@ -53,6 +53,7 @@ mod slider_integrals;
 mod slider_parameters;
 mod slip_element;
 mod slip_series;
+mod spring;
 mod stick_slip;
 mod stop;
 mod structural;

@@ -8,6 +8,7 @@
 use super::law::HarmonicForce;
 use super::parameter::number;
 use super::return_map::ReturnMapJacobian;
+use super::spring::{harmonics_of_a_spring, law_of_a_spring};
 use super::stick_slip::{crossing, Path};
 use super::{ContactLaw, Motion, Parameter, Parameters, Phase, PointState, PointSummary, SlipLoad};
 use crate::fourier::IntervalSums;
@@ -61,6 +62,14 @@ impl Stop {
 
     fn force(&self, u: f64) -> f64 {
         self.stiffness * (u - self.gap).max(0.0)
+    }
+
+    fn slope(&self, u: f64) -> f64 {
+        if u > self.gap {
+            self.stiffness
+        } else {
+            0.0
+        }
     }
 
     fn touch(&self, motion: Motion<'_>) -> Touch {
@@ -136,16 +145,10 @@ impl Stop {
 }
 
 impl ContactLaw for Stop {
+    law_of_a_spring!();
+
     fn name(&self) -> &'static str {
         "stop"
-    }
-
-    fn displacements(&self) -> usize {
-        1
-    }
-
-    fn state_size(&self) -> usize {
-        0
     }
 
     /// That at rest: k where it is closed there.
@@ -154,36 +157,8 @@ impl ContactLaw for Stop {
         Mat::from_fn(1, 1, |_, _| own)
     }
 
-    fn state_stiffness(&self) -> Mat<f64> {
-        Mat::zeros(0, 1)
-    }
-
     fn is_odd(&self) -> bool {
         false
-    }
-
-    /// The force grows with the displacement, but not with the velocity: that does not make the motion
-    /// unique.
-    fn is_monotone(&self) -> bool {
-        false
-    }
-
-    fn limits(&self) -> Vec<f64> {
-        vec![f64::INFINITY]
-    }
-
-    fn return_map(
-        &self,
-        _before: &[f64],
-        after: &[f64],
-        _state: &mut [f64],
-        force: &mut [f64],
-        jacobian: Option<&mut ReturnMapJacobian>,
-    ) {
-        force[0] = self.force(after[0]);
-        let Some(jacobian) = jacobian else { return };
-        jacobian.reset(1, 0);
-        jacobian.force_by_after[0] = if after[0] > self.gap { self.stiffness } else { 0.0 };
     }
 
     fn with_scaled_stiffness(&self, share: f64) -> Box<dyn ContactLaw> {
@@ -204,13 +179,11 @@ impl ContactLaw for Stop {
             _ => Self::new(self.stiffness, value)?,
         }))
     }
-
-    fn closed_form(&self) -> Option<&dyn HarmonicForce> {
-        Some(self)
-    }
 }
 
 impl HarmonicForce for Stop {
+    harmonics_of_a_spring!();
+
     fn slip_load(&self, motion: Motion<'_>, tangent: bool, out: &mut SlipLoad) {
         let harmonics = motion.table.harmonics();
         let size = harmonics.slots();
@@ -248,24 +221,6 @@ impl HarmonicForce for Stop {
             out.value.iter_mut().zip(motion.displacement).for_each(|(q, u)| *q += base * u);
             out.tangent.iter_mut().step_by(size + 1).for_each(|t| *t += base);
         }
-    }
-
-    fn summary(&self, _motion: Motion<'_>, out: &mut [PointSummary]) {
-        out.fill(PointSummary::default());
-    }
-
-    fn state_history(&self, _motion: Motion<'_>, _samples: usize) -> Vec<f64> {
-        Vec::new()
-    }
-
-    fn force_history(&self, motion: Motion<'_>, samples: usize) -> Vec<f64> {
-        let harmonics = motion.table.harmonics();
-        let at = |n: usize| harmonics.jet(motion.displacement, TAU * n as f64 / samples as f64)[0];
-        (0..samples).map(|n| self.force(at(n))).collect()
-    }
-
-    fn phases(&self, _motion: Motion<'_>) -> Vec<Phase> {
-        vec![Phase { start: 0.0, states: vec![PointState::Stuck] }]
     }
 
     fn parameter_slope(&self, motion: Motion<'_>, index: usize, out: &mut [f64]) {
