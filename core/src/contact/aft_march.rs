@@ -11,12 +11,12 @@ use faer::Mat;
 use std::f64::consts::TAU;
 use std::ops::Deref;
 
-/// Rounds after which a march is taken as it is. An elastoplastic contact forgets its start with
+/// Rounds after which a march ends, repeated or not. An elastoplastic contact forgets its start with
 /// the first slip in either direction; several coupled points take some rounds more.
 const MOST_ROUNDS: usize = 200;
 /// Change of the state over a round, relative to the largest, that counts as none, …
 const PERIODIC: f64 = 1e-13;
-/// … and that the fixed point of the linearised round takes up without an error.
+/// … and that is small enough for the fixed point of the linearised round to be exact.
 const SMALL: f64 = 1e-7;
 /// Rounds after which slip is taken to recur, so that its fixed point is sought.
 const PUSHES: usize = 3;
@@ -36,7 +36,7 @@ pub(super) struct Round {
     pub(super) slipped: bool,
 }
 
-/// What goes from instant to instant.
+/// What a march takes from instant to instant.
 pub(super) struct Step {
     state: Vec<f64>,
     force: Vec<f64>,
@@ -134,7 +134,7 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
             restarts: vec![Restart::GoesOn],
             slipping: Vec::new(),
             work: Vec::new(),
-            // What a contact keeps that follows the motion varies as slip does.
+            // A residual force that depends on the motion varies as slip does.
             slipped: departs(&step) || begun.moves(&step.jacobian),
         };
         let couples = |element: &Element| element.law.planes().is_empty();
@@ -152,7 +152,7 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
                 let old = (n - 1) * count;
                 round.state[(n - 1) * size..n * size].copy_from_slice(&step.state);
                 round.force[old..old + count].copy_from_slice(&step.force);
-                // What has slipped needs no more than its forces, unless more is asked for.
+                // Once it has slipped, forces are enough unless more is asked for.
                 let derived = account || !round.slipped || lap.is_some();
                 self.advance(samples, n, &mut step, derived);
                 if let Some(lap) = &mut lap {
@@ -176,7 +176,7 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
             let change = change.fold(0.0, f64::max);
             let slips = lap.as_ref().is_none_or(|lap| !is_identity(&lap.by, size));
             let small = |change: f64| change <= SMALL * largest;
-            // A jump that was not small is made sure of by another one.
+            // A jump that was not small is confirmed by another one.
             let unsure = jump.take().filter(|(_, by)| !small(*by));
             let periodic = change <= PERIODIC * largest && unsure.is_none();
             if let Some((state, by)) = unsure.filter(|_| !slips) {

@@ -28,20 +28,20 @@ pub enum ModeMethod {
 /// Forces that all contacts hold, to one side or the other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Corner {
-    /// Which sides, from 0: all of up to three laws, of more eight that differ.
+    /// Number of a combination of sides, from 0: of up to three laws there are all, of more laws eight.
     pub number: usize,
-    /// How much of what they can hold at rest, up to 1: there motion pushes them to their limits.
+    /// Share of what they can hold at rest, up to 1, where motion pushes them to their limits.
     pub share: f64,
 }
 
 /// What is asked of a nonlinear mode.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ModeSettings {
-    /// What it is taken to be.
+    /// Which motion stands for the mode.
     pub method: ModeMethod,
     /// Which mode of the structure at rest, from 0.
     pub mode: usize,
-    /// Where.
+    /// At which amplitudes.
     pub amplitudes: Amplitudes,
     /// Harmonics kept.
     pub harmonics: HarmonicChoice,
@@ -53,7 +53,7 @@ pub struct ModeSettings {
     pub residual: Residual,
     /// … or what they hold instead.
     pub corner: Option<Corner>,
-    /// Most points.
+    /// Largest number of points.
     pub most: usize,
 }
 

@@ -2,7 +2,8 @@
 //!
 //! The least and the largest amplitude are sought where the search for the peak has looked, as along
 //! any curve ([`super::bounds`]); around the highest point of either, points are added at the tops of
-//! parabolas and, since a bound may end at a jump, halfway to the farther neighbour in turn. What is the same from one frequency to the next has a peak between these two.
+//! parabolas and, since a bound may end at a jump, halfway to the farther neighbour in turn. A residual
+//! traction that is the same at all frequencies has a peak between these two.
 
 use super::bounds::{tables_of, Found, Search, Survey};
 use super::held_pool::NO_WIDTH;

@@ -1,10 +1,10 @@
 //! The highest of several motions at a frequency.
 //!
-//! Where laws are not monotone, a point solved by itself may be any of them. Neighbouring samples that no
-//! one smooth curve goes through however short their interval becomes, or a search without an answer, say
-//! that there are several: then the curve is followed around its folds by arclength, and the search begins
-//! again from its largest motions. What is higher on the curve than what that finds leaves the highest point
-//! in doubt.
+//! Where laws are not monotone, a point that is solved by itself may be any of them. There are several if
+//! no smooth curve joins two neighbouring samples, however short their interval becomes, or if the search
+//! has no answer. Then the curve is followed around its folds by arclength, and the search begins again
+//! from its largest motions. If the curve is still higher than what is found, the highest point is in
+//! doubt.
 
 use super::first_look::Aim;
 use super::samples::Sample;
@@ -15,13 +15,13 @@ use crate::solve::norm;
 use crate::timing::Profile;
 use crate::Error;
 
-/// What two neighbours may differ beyond the mean of their slopes, relative to the larger.
+/// Largest distance of two neighbours from the line with the mean of their slopes, relative to the larger.
 const TORN: f64 = 0.25;
 /// Halvings of an interval after which they are on different branches.
 const HALVINGS: usize = 8;
 /// Tolerance of the curve's steps, if that of the harmonics is not larger.
 const STEPS: f64 = 0.01;
-/// What the curve may be higher than what is found: its harmonics and steps.
+/// By how much the curve may be higher than what is found: the error of its harmonics and steps.
 const HIGHER: f64 = 2e-3;
 
 /// Whether a smooth curve goes from one sample to another, as far as their slopes tell.

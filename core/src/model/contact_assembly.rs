@@ -1,4 +1,4 @@
-//! Contacts contact_assembly into the rows and the stiffness of a structure.
+//! Contacts assembled into the rows and the stiffness of a structure.
 
 use crate::contact::ContactLaw;
 use crate::Error;

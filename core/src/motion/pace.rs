@@ -18,7 +18,7 @@ pub(super) fn dof_rates(model: &Model) -> Vec<f64> {
 
 /// Fastest rate of the free motion [1/s].
 pub(super) fn rate_of(model: &Model, damping: &ModalDamping) -> f64 {
-    // No natural frequency tells of the substitutes of DOFs without mass.
+    // Natural frequencies are those of the masses: DOFs without mass have substitutes, which are faster.
     let rates = dof_rates(model);
     let squares = model.structure().massless().iter().map(|&dof| rates[dof].powi(2));
     let highest = model.compliance().stuck_frequencies().last().copied().unwrap_or(0.0);

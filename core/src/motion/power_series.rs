@@ -1,8 +1,9 @@
 //! The motion between two events as a power series in time, exact to rounding.
 //!
 //! Between events the equations are linear but for contacts that slide in a plane, and each coefficient
-//! of the series follows from the ones before. The series needs no decomposition per set of sticking contacts, has no defective
-//! cases, and hands displacements and forces over as polynomials whose zeros are the events.
+//! of the series follows from the ones before. The series needs no decomposition per set of sticking
+//! contacts and has no defective cases. Events are the zeros of the polynomials that displacements and
+//! forces are.
 
 use super::branch_series::BranchSeries;
 use super::modal_system::{dot, ModalSystem};

@@ -63,7 +63,8 @@ pub struct ModalCompliance {
     pub(super) contact_modes: Option<Arc<ContactModes>>,
 }
 
-/// What a modal compliance is made of: modes of the stuck and of the free structure, rows of B (complex in a travelling wave), contact stiffness and loads.
+/// What a modal compliance is made of: modes of the stuck and of the free structure, rows of B
+/// (complex in a travelling wave), contact stiffness and loads.
 pub(super) struct Wave {
     pub(super) stuck: HermitianModes,
     /// What DOFs without mass add to them.
@@ -76,8 +77,9 @@ pub(super) struct Wave {
     pub(super) loads: Vec<HarmonicLoad>,
 }
 
-/// The compliance of a structure: modal, of many contacts through the modes of the stuck structure, or by direct solution where its complex modes are
-/// defective (critically damped or undamped rigid-body modes with general damping).
+/// The compliance of a structure: by its modes, with many contacts by those of the stuck structure; or
+/// by direct solution where its complex modes are defective (critically damped or undamped rigid-body
+/// modes with general damping).
 ///
 /// # Errors
 /// Shapes that do not fit, or an eigenvalue iteration that fails.

@@ -38,9 +38,9 @@ pub(crate) struct ModalDamping {
 
 /// What a damping matrix does to two modes.
 enum Pair {
-    /// They do not know of each other.
+    /// They are not coupled.
     Separate,
-    /// They are combinations of two that do not: cosine, and sine with its phase.
+    /// They are combinations of two that are not coupled: cosine, and sine with its phase.
     Turned(f64, c64),
     /// They are coupled.
     Coupled,

@@ -1,4 +1,4 @@
-"""The sectors that a travelling wave tells apart: what its exact orbits are sought with.
+"""The sectors that a travelling wave tells apart, by which its exact orbits are sought.
 
 A sector of a wave feels its neighbours, and has no motion of its own in time. With ``X_j`` for
 sector j of n, engine order E and the period T, ``X_j(t) = X_0(t + j E T/n)``: after T/n every

@@ -52,7 +52,7 @@ class _Columns:
         left = count
         for line in lines:
             expected = min(self.repeat, left)
-            # Columns count where numbers touch; SciPy's writer does not keep to its own columns.
+            # Numbers that touch are parted by the columns; SciPy's writer does not keep to its own.
             words = line.split()
             if len(words) != expected:
                 end = expected * self.width

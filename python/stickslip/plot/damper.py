@@ -75,7 +75,7 @@ def damper(
 
 
 class _View(NamedTuple):
-    """What of a curve is drawn."""
+    """The part of a curve that is drawn."""
 
     x: Float
     y: Float

@@ -60,7 +60,7 @@ def quantity_of(unit: str, bound: str = "", *, finite: bool = True) -> BeforeVal
 
 
 def _quantity_schema(*examples: str) -> WithJsonSchema:
-    # editors need to know that the text is welcome too: pydantic would see a number only
+    # Pydantic knows of numbers only, and editors have to know of texts as well.
     return WithJsonSchema({"type": ["number", "string"], "examples": list(examples)})
 
 
@@ -304,4 +304,4 @@ def _form(value: object) -> Hashable:
 ListOr: TypeAlias = Annotated[
     Annotated[Some[_T], Tag("<list>")] | Annotated[_R, Tag("<number>")], Discriminator(_form)
 ]
-"""A list of some, or something else; each is complained of as itself."""
+"""A list of some, or something else; messages are those of the form that was given."""
