@@ -139,6 +139,15 @@ impl Error {
         })
     }
 
+    /// Refuses what is no frequency.
+    pub(crate) fn check_frequency(entry: &str, omega: f64) -> Result<(), Self> {
+        // Squares of frequencies must stay finite.
+        if omega > 0.0 && omega < 1e100 {
+            return Ok(());
+        }
+        Err(Self::value(entry, omega, "must be a finite, positive angular frequency in rad/s"))
+    }
+
     /// Refuses an order of harmonics that cannot be had.
     pub(crate) fn check_order(entry: &str, order: usize, highest: usize) -> Result<(), Self> {
         if (1..=highest).contains(&order) {

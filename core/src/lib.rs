@@ -7,6 +7,7 @@
 //! | [`fourier`] | trigonometric series: evaluation, turning points, sums over intervals |
 //! | [`structure`] | M, C, K, modes and the compliance of the stuck structure |
 //! | [`contact`] | friction laws behind one trait: series of u in, series of slip load and tangent out |
+//! | [`model`] | structure, contacts and loads: the problem, before any setting or solver |
 //! | [`balance`] | the harmonic balance equations and their sweeps over frequency |
 //! | [`design`] | peaks followed along a parameter, and the parameter that makes them least |
 //! | [`solve`] | Newton's and Broyden's method and homotopy, which know nothing of friction |
@@ -25,6 +26,7 @@ pub mod model;
 pub mod motion;
 pub mod orbit;
 mod parallel;
+pub mod progress;
 pub mod solve;
 pub mod structure;
 pub mod timing;

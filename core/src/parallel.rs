@@ -1,6 +1,6 @@
 //! Work in parts on all processors, with one caller who may end it.
 
-use crate::balance::Progress;
+use crate::progress::Progress;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{channel, RecvTimeoutError};
 use std::time::Duration;

@@ -6,7 +6,7 @@ use super::forced::ForcedBalance;
 use super::keep;
 use super::solution::{Point, PointStatus, Solution};
 use super::stops::{stops, LONGEST};
-use super::sweep::{check_frequency, finish};
+use super::sweep::finish;
 use super::unknowns::Unknowns;
 use crate::solve::System as _;
 use crate::Error;
@@ -32,8 +32,8 @@ const ASIDE: f64 = 1e-8;
 /// As for a sweep over given frequencies; a range of no length.
 pub fn sweep_range(mut balance: ForcedBalance<'_>, from: f64, to: f64) -> Result<Solution, Error> {
     let start = Instant::now();
-    check_frequency("omega range: start", from)?;
-    check_frequency("omega range: end", to)?;
+    Error::check_frequency("omega range: start", from)?;
+    Error::check_frequency("omega range: end", to)?;
     if from == to {
         return Err(Error::value("omega range: end", to, "must differ from its start"));
     }

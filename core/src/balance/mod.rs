@@ -65,8 +65,10 @@ pub use solution::{AmplitudeBounds, CurveEnd, Point, PointStatus, Solution, Uniq
 pub(crate) use statics::{slip_load, Level, Loading};
 pub use statics::{static_response, with_history, AtRest, RestStatus};
 pub use sweep::sweep;
-pub(crate) use sweep::{check_bracket, check_frequencies, check_frequency, over_frequencies};
+pub(crate) use sweep::{check_bracket, check_frequencies, over_frequencies};
 pub use unknowns::Unknowns;
+
+pub use crate::progress::Progress;
 
 /// Exact orbits that a balance may turn to.
 pub trait ExactOrbits {
@@ -87,7 +89,3 @@ pub(crate) fn keep<T>(kept: Option<&Kept<T>>, point: &std::sync::Arc<T>) {
         points.push(std::sync::Arc::clone(point));
     }
 }
-
-/// Called between points and between Newton iterations with the share of the work done; `false`
-/// ends the analysis and keeps what is solved.
-pub type Progress<'a> = dyn Fn(f64) -> bool + 'a;

@@ -2,7 +2,7 @@
 
 use crate::balance::{HeldMotion, SliderBalance};
 
-/// Largest number of corners that are tried.
+/// Corners that are tried at most.
 const CORNERS: usize = 8;
 /// Vibrations from which others are looked for: complex multiples of the curve's, …
 const MULTIPLES: [[f64; 2]; 3] = [[-3.0, 0.0], [0.0, 3.0], [0.0, -3.0]];
@@ -10,11 +10,11 @@ const MULTIPLES: [[f64; 2]; 3] = [[-3.0, 0.0], [0.0, 3.0], [0.0, -3.0]];
 const OF_STUCK: [[f64; 2]; 2] = [[-3.0, 0.0], [0.0, 3.0]];
 /// … and the curve's with one added that opens a contact or all of them, over its largest component.
 const OPENING: [f64; 2] = [3.0, 10.0];
-/// Contacts that are opened one by one at a point.
+/// Single contacts that are opened at a point.
 const OPENED: usize = 3;
-/// Width of the bounds, relative to the amplitude, below which they coincide.
+/// Width of the bounds, relative to the amplitude, that is none.
 pub(super) const NO_WIDTH: f64 = 1e-9;
-/// Distance of two positions, relative to their range, below which they are the same.
+/// Distance of two positions, relative to their range, that is none.
 const SAME: f64 = 1e-3;
 
 /// All motions found at a point: every one is a bound of every DOF.

@@ -1,8 +1,8 @@
 //! Many starts at once, on all processors.
 
 use super::classification::{Classification, ClassificationSettings, Classifier};
-use crate::balance::Progress;
 use crate::model::Model;
+use crate::progress::Progress;
 use crate::Error;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::Mutex;

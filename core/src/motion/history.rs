@@ -1,7 +1,6 @@
 //! A motion in time as the caller asks for it and has it.
 
 use super::flow_event::{Event, Halt};
-use crate::balance::check_frequency;
 use crate::Error;
 use std::time::Duration;
 
@@ -37,7 +36,7 @@ impl TransientSettings {
     /// # Errors
     /// A setting outside its range.
     pub fn check(&self) -> Result<(), Error> {
-        check_frequency("omega", self.omega)?;
+        Error::check_frequency("omega", self.omega)?;
         let steps = match self.scheme {
             Scheme::Exact => 1,
             Scheme::RungeKutta(steps) => steps,
