@@ -308,7 +308,7 @@ impl HarmonicForce for Jenkins {
             match cycle {
                 StickSlipIntervals::Free => slider.add_free(motion, tangent, out),
                 StickSlipIntervals::Stuck if harmonics.has_mean() => {
-                    slider.add_stuck(motion, &path, tangent, out);
+                    slider.add_stuck(motion, &path, out);
                 }
                 _ => {}
             }

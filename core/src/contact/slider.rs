@@ -57,11 +57,8 @@ impl Slider {
         half_range: f64,
     ) -> (f64, f64, f64) {
         let k = self.stiffness;
-        let (wanted, wanted_slope) = match residual {
-            Residual::Centred => (0.0, 0.0),
-            Residual::FromRest => (k * middle, k),
-            Residual::Value(force) => (force, 0.0),
-        };
+        let wanted = self.wanted_mean(residual, middle);
+        let wanted_slope = if residual == Residual::FromRest { k } else { 0.0 };
         let room = self.slip_force - k * half_range;
         if wanted.abs() <= room {
             (k * middle - wanted, k - wanted_slope, 0.0)
@@ -111,15 +108,7 @@ impl Slider {
     }
 
     /// Adds the mean slip load of an element that never slips.
-    pub(super) fn add_stuck(
-        &self,
-        motion: Motion<'_>,
-        path: &Path<'_>,
-        tangent: bool,
-        out: &mut SlipLoad,
-    ) {
-        let harmonics = motion.table.harmonics();
-        let size = harmonics.slots();
+    pub(super) fn add_stuck(&self, motion: Motion<'_>, path: &Path<'_>, out: &mut SlipLoad) {
         let (load, by_middle, by_range) =
             self.held_load(motion.residual, path.middle(), path.half_range());
         out.value[0] += load;
@@ -127,14 +116,10 @@ impl Slider {
             return;
         }
         out.active = true;
-        if tangent {
-            let (mut high, mut low) = (vec![0.0; size], vec![0.0; size]);
-            harmonics.basis(path.crest.theta, &mut high);
-            harmonics.basis(path.trough.theta, &mut low);
-            for (j, slope) in out.tangent[..size].iter_mut().enumerate() {
-                *slope += 0.5 * (by_middle * (high[j] + low[j]) + by_range * (high[j] - low[j]));
-            }
-        }
+        path.add_extremes(
+            [0.5 * (by_middle + by_range), 0.5 * (by_middle - by_range)],
+            &mut out.tangent,
+        );
     }
 }
 

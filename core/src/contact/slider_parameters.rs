@@ -87,7 +87,7 @@ impl Slider {
     }
 
     /// Force at mid-range that the residual assumption asks of a contact that never slips.
-    fn wanted_mean(&self, residual: Residual, middle: f64) -> f64 {
+    pub(super) fn wanted_mean(&self, residual: Residual, middle: f64) -> f64 {
         match residual {
             Residual::Centred => 0.0,
             Residual::FromRest => self.stiffness * middle,

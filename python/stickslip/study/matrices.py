@@ -176,7 +176,6 @@ def named(entry: str) -> Iterator[None]:
 def damping_of(
     source: str | MatrixFile | Rows | RayleighDamping | ModalDampingTable | None,
     folder: Path,
-    entry: str = "damping",
 ) -> MatrixLike | DampingLaw | None:
     """Return a damping matrix or law."""
     match source:
@@ -187,7 +186,7 @@ def damping_of(
         case ModalDampingTable(modal=ratio):
             return ModalDamping(ratio)
         case source:
-            return matrix_of(source, folder, entry)
+            return matrix_of(source, folder, "damping")
 
 
 def matrix_of(source: str | MatrixFile | Rows, folder: Path, entry: str) -> MatrixLike:
