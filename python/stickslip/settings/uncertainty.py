@@ -106,9 +106,9 @@ class SampledSettings(HarmonicSettings):
     samples: Count = Field(default=512, description="How many samples are drawn.")
     sampling: Annotated[Literal["sobol", "random"], ONE_OF] = Field(
         default="sobol",
-        description="How samples are drawn: as points of a scrambled Sobol sequence, which fill the "
-        "space evenly, best in powers of 2; or at random, for which intervals of percentiles are "
-        "exact.",
+        description="How samples are drawn: as points of a scrambled Sobol sequence, which fill "
+        "the space evenly, best in powers of 2; or at random, for which intervals of percentiles "
+        "are exact.",
     )
     seed: Index = Field(
         default=0,
