@@ -104,5 +104,5 @@ class CertifySettings(Settings):
         examples=[20, "all", [0, 10, 20]],
     )
     seed: Index = Field(
-        default=0, description="Of the random choice: the same seed chooses the same points."
+        default=0, description="Seed of the random choice: the same seed chooses the same points."
     )

@@ -217,8 +217,8 @@ class MistuningKeys(StoredKeys, PeakSettings):
     )
     seed: Index = Field(
         default=0,
-        description="Of the patterns drawn. Pattern i of a seed is the same however many there "
-        "are, and the same for all deviations and couplings.",
+        description="Seed of the patterns drawn. Pattern i of a seed is the same for any number of "
+        "them, and for all deviations and couplings.",
     )
     distribution: _Distribution = Field(
         default="normal",
@@ -235,4 +235,4 @@ class MistuningSettings(PeakSettings):
     distribution: _Distribution | None = Field(
         default="normal", description="What patterns are drawn from; none: they were given."
     )
-    seed: Index | None = Field(default=0, description="Of the patterns drawn.")
+    seed: Index | None = Field(default=0, description="Seed of the patterns drawn.")
