@@ -208,7 +208,14 @@ def test_a_set_of_more_numbers_than_nodes_takes_no_room(tmp_path):
 
 @pytest.mark.parametrize(
     "entry",
-    ["SET1,1,15,THRU", "SET1,1,18,THRU,15", "SET1,x,15", "SET1,,15", "GRID,,,0.,0.,0."],
+    [
+        "SET1,1,15,THRU",
+        "SET1,1,18,THRU,15",
+        "SET1,x,15",
+        "SET1,,15",
+        "GRID,,,0.,0.,0.",
+        "SET1,1,15,16,17,18,20,21,22,,10",
+    ],
 )
 def test_a_spoilt_entry_of_nastran_is_refused(tmp_path, entry):
     pytest.importorskip("meshio")
