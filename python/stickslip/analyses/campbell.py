@@ -84,12 +84,17 @@ def model_at(build: object, speed: float) -> Model:
     """Return the model at a speed; one that does not depend on it is returned as it is."""
     if isinstance(build, Model):
         return build
-    if not callable(build):
-        raise ModelError(f"models: {brief(build)} is neither a Model nor a function of the speed")
-    model = build(speed)
+    model = require_models(build)(speed)
     if not isinstance(model, Model):
         raise ModelError(f"models: it returned {brief(model)}, no Model; return one")
     return model
+
+
+def require_models(build: object) -> Callable[[float], object]:
+    """Return what makes models of a speed, or refuse what makes none."""
+    if not callable(build):
+        raise ModelError(f"models: {brief(build)} is neither a Model nor a function of the speed")
+    return build
 
 
 def _frequencies(model: Model) -> tuple[Float, Float]:

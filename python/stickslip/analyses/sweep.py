@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from operator import methodcaller
 from typing import TypeAlias
 
 import numpy as np
 
+from stickslip.analyses.campbell import model_at, require_models
 from stickslip.analyses.run import Progress, share
 from stickslip.analyses.variation import variation_of
 from stickslip.checks import brief
@@ -113,19 +115,11 @@ def _family(
             parameter=parameter, unit=variation.unit, values=values, variation=variation
         )
         return settings, lambda value: variation.apply(base, value)
-    if not callable(models):
-        raise ModelError(f"models: {brief(models)} is neither a Model nor a function of the speed")
+    require_models(models)
     if keys.contacts is not None:
         raise ModelError(_NO_CONTACTS.format("a speed"))
-    build = models
-
-    def at(speed: float) -> Model:
-        model = build(speed)
-        if not isinstance(model, Model):
-            raise ModelError(f"models: it returned {brief(model)}, no Model; return one")
-        return model
-
-    return SweepSettings.of(parameter="speed", unit="rad/s", values=values), at
+    kept = SweepSettings.of(parameter="speed", unit="rad/s", values=values)
+    return kept, partial(model_at, models)
 
 
 def _at_order(model: Model, keys: SweepKeys) -> Callable[[float], Model]:

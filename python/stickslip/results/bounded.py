@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,13 +14,52 @@ from stickslip.results.contact_motion import ContactMotion
 from stickslip.results.peaks import Peak, highest_of
 
 
-class Bounded(ContactMotion):
-    """The part of a result that `residual="bounds"` adds."""
+class ResidualBounds:
+    """What is known of a result over all residual tractions, point by point."""
+
+    arrays: Any
+    bounded_by: ClassVar[str]
+    """What computes the bounds."""
 
     @property
     def bounded(self) -> bool:
         """Whether bounds over the residual tractions are known at some point."""
         return bool((self.arrays.unique != UNIQUE.index("not asked")).any())
+
+    @cached_property
+    def unique(self) -> NDArray[np.str_]:
+        """Whether each vibration is the same for all residual tractions, of the observed dofs.
+
+        "yes" (the bounds coincide: no other vibration was found, and where `guaranteed` is true
+        there is none), "no" (it depends on them), "shakedown" (it does, and the motion itself has
+        pushed a contact in one sense until it slips no more), "not decided" (no other vibration was
+        found before the effort that a curve may cost was spent; ask for the frequency by itself),
+        "not found" (of an exact orbit: one of those that bound it was not found) or "not asked".
+        """
+        return constant(np.array(UNIQUE)[self.arrays.unique])
+
+    @property
+    def guaranteed(self) -> Bool:
+        """Whether theory excludes amplitudes outside of the bounds, point by point.
+
+        It does where there is one vibration alone: monotone laws on a damped structure. Elsewhere
+        the bounds are inner ones: the amplitudes between were found, others could lie outside.
+        """
+        found: Bool = self.arrays.guaranteed
+        return found
+
+    def _require_bounded(self) -> None:
+        if not self.bounded:
+            raise ModelError(
+                'residual: its bounds were not computed; give residual="bounds" to '
+                f"{self.bounded_by}"
+            )
+
+
+class Bounded(ResidualBounds, ContactMotion):
+    """The part of a forced response that `residual="bounds"` adds."""
+
+    bounded_by = "forced_response"
 
     def lower(self, dof: str) -> Float:
         """Return the least amplitude over all residual tractions, shape (n,) [m].
@@ -56,30 +96,6 @@ class Bounded(ContactMotion):
         amplitude = min(least.amplitude, self.peak(dof).amplitude)
         return least._replace(amplitude=amplitude), highest
 
-    @cached_property
-    def unique(self) -> NDArray[np.str_]:
-        """Whether each vibration is the same for all residual tractions, of the observed dofs.
-
-        "yes" (the bounds coincide: no other vibration was found, and where `guaranteed` is true
-        there is none), "no" (it depends on them), "shakedown" (it does, and the motion itself has
-        pushed a contact in one sense until it slips no more), "not decided" (no other vibration was
-        found before the effort that a curve may cost was spent; ask for the frequency by itself),
-        "not found" (of an exact orbit: one of those that bound it was not found) or "not asked".
-        """
-        return constant(np.array(UNIQUE)[self.arrays.unique])
-
-    @property
-    def guaranteed(self) -> Bool:
-        """Whether theory excludes amplitudes outside of the bounds, point by point.
-
-        It does where there is one vibration alone: monotone laws on a damped structure. Elsewhere
-        the bounds are inner ones: the amplitudes between were found, others could lie outside.
-        """
-        return self.arrays.guaranteed
-
     def _bound(self, values: Float, dof: str) -> Float:
-        if not self.bounded:
-            raise ModelError(
-                'residual: its bounds were not computed; give residual="bounds" to forced_response'
-            )
+        self._require_bounded()
         return constant(values[:, self._column(dof)].copy())

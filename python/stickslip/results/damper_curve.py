@@ -7,12 +7,12 @@ from functools import cached_property
 from typing import ClassVar, NamedTuple, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.results.arrays import UNIQUE, Bool, Code, Float, Int, constant
+from stickslip.results.bounded import ResidualBounds
 from stickslip.results.dataset import Stored
 from stickslip.results.fields import Columns, Shown, column
 from stickslip.results.result import ColumnResult
@@ -71,7 +71,7 @@ class DamperArrays(Columns):
         return constant(np.isfinite(self.amplitude))
 
 
-class DamperCurve(ColumnResult):
+class DamperCurve(ResidualBounds, ColumnResult):
     """Peak amplitude and frequency along a parameter of contacts, or the level of the forces."""
 
     kind: ClassVar[str] = "damper_curve"
@@ -79,6 +79,7 @@ class DamperCurve(ColumnResult):
 
     settings: DamperSettings
     arrays: DamperArrays
+    bounded_by = "damper_curve"
 
     def __repr__(self) -> str:
         values, solved = self.values, self.arrays.solved
@@ -108,11 +109,6 @@ class DamperCurve(ColumnResult):
         return tuple(map(Status.from_code, self.arrays.status.tolist()))
 
     @property
-    def bounded(self) -> bool:
-        """Whether bounds over the residual tractions are known at some value."""
-        return bool((self.arrays.unique != UNIQUE.index("not asked")).any())
-
-    @property
     def lower(self) -> Float:
         """The least peak over all residual tractions, shape (n,) [m].
 
@@ -122,7 +118,8 @@ class DamperCurve(ColumnResult):
 
         Raises ModelError if the bounds were not asked for.
         """
-        return self._bound(self.arrays.lower)
+        self._require_bounded()
+        return self.arrays.lower
 
     @property
     def upper(self) -> Float:
@@ -130,32 +127,8 @@ class DamperCurve(ColumnResult):
 
         See `lower`.
         """
-        return self._bound(self.arrays.upper)
-
-    @cached_property
-    def unique(self) -> NDArray[np.str_]:
-        """Whether each peak is the same for all residual tractions.
-
-        "yes", "no" (it depends on them), "shakedown" (it does, and the motion at the peak has
-        itself pushed a contact in one sense until it slips no more) or "not asked".
-        """
-        return constant(np.array(UNIQUE)[self.arrays.unique])
-
-    @property
-    def guaranteed(self) -> Bool:
-        """Whether theory excludes peaks outside of the bounds, value by value.
-
-        It does where there is one vibration alone: monotone laws on a damped structure. Elsewhere
-        the bounds are inner ones: the amplitudes between were found, others could lie outside.
-        """
-        return self.arrays.guaranteed
-
-    def _bound(self, values: Float) -> Float:
-        if not self.bounded:
-            raise ModelError(
-                'residual: its bounds were not computed; give residual="bounds" to damper_curve'
-            )
-        return values
+        self._require_bounded()
+        return self.arrays.upper
 
     @property
     def objective(self) -> Float:
