@@ -158,7 +158,8 @@ def test_an_interrupted_certification_keeps_what_was_compared():
         ss.certify(frf, "all", progress=stop)
     certificate = it.value.result.certificate
     assert 0 < certificate.indices.size < 4000
-    np.testing.assert_array_equal(certificate.indices, np.arange(certificate.indices.size))
+    # Parts are followed at a time: the points that were found, in order, perhaps with a gap.
+    assert (np.diff(certificate.indices) > 0).all()
 
 
 def test_an_interruption_while_orbits_are_followed_keeps_them_all(coarse, monkeypatch):
