@@ -77,7 +77,7 @@ def cards(lines: Iterable[str], names: Container[str]) -> Iterator[tuple[str, li
         if head and head[0] not in "+*":
             if found:
                 yield found
-            name = head.rstrip("*").upper()
+            name = head.rstrip("*").rstrip().upper()
             found = (name, []) if name in names else None
         if found:
             found[1].extend(_fields(text))
