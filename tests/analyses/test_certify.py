@@ -160,6 +160,10 @@ def test_an_interrupted_certification_keeps_what_was_compared():
     assert 0 < certificate.indices.size < 4000
     # Parts are followed at a time: the points that were found, in order, perhaps with a gap.
     assert (np.diff(certificate.indices) > 0).all()
+    np.testing.assert_array_equal(certificate.omega, frf.omega[certificate.indices])
+    last = certificate.indices[-2:]
+    own = ss.certify(frf, last.tolist()).certificate
+    np.testing.assert_allclose(certificate.amplitude[-2:], own.amplitude, rtol=1e-9)
 
 
 def test_an_interruption_while_orbits_are_followed_keeps_them_all(coarse, monkeypatch):

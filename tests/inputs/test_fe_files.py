@@ -96,6 +96,17 @@ def test_dmig_in_narrow_and_free_fields(tmp_path):
     assert ss.read_dofs(file) == ("2.3", "27.1")
 
 
+@pytest.mark.parametrize("head", ["DMIG*", "DMIG   *"])
+def test_dmig_in_wide_fields_wherever_the_star_stands(tmp_path, head):
+    file = tmp_path / "wide.pch"
+    file.write_text(
+        "DMIG    STIF    0       6       2       0\n"
+        f"{head:<8}{'STIF':<16}{27:<16}{1:<16}\n"
+        f"{'*':<8}{27:<16}{1:<16}{'3.0000000001D+5':<16}\n"
+    )
+    np.testing.assert_array_equal(ss.read_matrix(file, "STIF"), [[3.0000000001e5]])
+
+
 def test_calculix_matrices_have_its_frequencies():
     # written by ccx 2.20 of Debian from bar.inp, whose job printed the frequencies in bar.dat
     K, M = (ss.read_matrix(DATA / f"bar{end}") for end in (".sti", ".mas"))
