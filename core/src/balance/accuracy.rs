@@ -138,7 +138,7 @@ impl Effort<'_> {
         let [mut receptance, displacement] = self.model.compliance().effort(self.observed);
         if let Some(modes) = self.model.compliance().contact_modes() {
             if self.is_of_many(highest) {
-                receptance = 10.0 * modes.modes() as f64;
+                receptance = modes.effort();
             }
         }
         count as f64 * (evaluations * receptance + recoveries * displacement)

@@ -12,7 +12,7 @@ use super::slip_jacobian::{Answers, Border, Loads, SlipJacobian};
 use crate::contact::SlipLoad;
 use crate::model::Model;
 use crate::solve::{norm, Parametrised, System};
-use crate::structure::{Compliance as _, ContactModes, ModalOrders};
+use crate::structure::{Compliance as _, ContactCoordinates, ModalOrders};
 use crate::timing::Profile;
 use faer::Mat;
 
@@ -154,7 +154,11 @@ impl Condensed<'_> {
             .collect()
     }
 
-    fn products<'b>(&'b self, modes: &'b ContactModes, orders: &'b ModalOrders) -> Products<'b> {
+    fn products<'b>(
+        &'b self,
+        modes: &'b dyn ContactCoordinates,
+        orders: &'b ModalOrders,
+    ) -> Products<'b> {
         Products {
             modes,
             orders,

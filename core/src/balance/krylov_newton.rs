@@ -7,7 +7,7 @@
 
 use super::slip_jacobian::{Border, Loads};
 use crate::solve::{gmres, norm, KrylovSettings};
-use crate::structure::{Compliance, ContactModes, ModalOrders};
+use crate::structure::{Compliance, ContactCoordinates, ContactShapes, ModalOrders};
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatRef, Par};
 
@@ -30,7 +30,7 @@ const SIDE_BY_SIDE: usize = 8;
 /// What a product with `I − G ∂Q` is made of.
 #[derive(Clone, Copy)]
 pub(super) struct Products<'a> {
-    pub(super) modes: &'a ContactModes,
+    pub(super) modes: &'a dyn ContactCoordinates,
     pub(super) orders: &'a ModalOrders,
     pub(super) loads: Loads<'a>,
     /// Sizes of the motion of all points.
@@ -43,8 +43,8 @@ pub(super) struct Products<'a> {
 /// The contacts that slip.
 pub(super) struct KrylovNewton {
     points: Vec<usize>,
-    /// Ψᵀ of them, modes × points.
-    shapes: Mat<f64>,
+    /// Ψ of them.
+    shapes: ContactShapes,
     /// Flexibility between them of modes that are none of these, as they follow their loads at once.
     flexibility: Option<Mat<f64>>,
 }
@@ -59,11 +59,11 @@ impl KrylovNewton {
     ) -> Self {
         let points = active.to_vec();
         let Some(modes) = compliance.contact_modes() else {
-            return Self { points, shapes: Mat::new(), flexibility: None };
+            return Self { points, shapes: ContactShapes::default(), flexibility: None };
         };
         match rough.and_then(|orders| modes.quasi_static(orders, active)) {
             Some((shapes, flexibility)) => Self { points, shapes, flexibility: Some(flexibility) },
-            None => Self { points, shapes: modes.of_contacts(active), flexibility: None },
+            None => Self { points, shapes: modes.part(active), flexibility: None },
         }
     }
 
@@ -91,7 +91,7 @@ impl KrylovNewton {
             moved.copy_from_slice(v);
             scaled(&mut moved, &|size| size);
             let motion = self.answered(products, &moved, WITHIN * tolerance, &mut load);
-            let mut motion = ContactModes::displace(self.shapes.as_ref(), motion.as_ref());
+            let mut motion = self.shapes.displace(motion.as_ref());
             if let Some(flexibility) = &self.flexibility {
                 let load = MatRef::from_column_major_slice(&load, slots, self.points.len());
                 let flexibility = flexibility.as_ref();
@@ -116,7 +116,7 @@ impl KrylovNewton {
         step.copy_from_slice(rhs);
         if self.points.len() * slots < step.len() {
             let motion = self.answered_by_all(products, &solution, WITHIN * tolerance, &mut load);
-            let motion = ContactModes::displace(modes.contacts(), motion.as_ref());
+            let motion = modes.displace(motion.as_ref());
             for (step, own) in step.chunks_exact_mut(slots).zip(motion.col_iter()) {
                 step.iter_mut().zip(own.iter()).for_each(|(step, u)| *step += u);
             }
@@ -160,7 +160,7 @@ impl KrylovNewton {
         let product = |v: &[f64], out: &mut [f64]| {
             moved.iter_mut().zip(v).zip(&sizes).for_each(|((m, v), size)| *m = v * size);
             let motion = self.answered(products, &moved, WITHIN * BORDERED, &mut load);
-            let answer = series(&ContactModes::displace(modes.contacts(), motion.as_ref()));
+            let answer = series(&modes.displace(motion.as_ref()));
             let own = divided(self.of_points(&answer, slots));
             let ahead = v[size];
             for (((out, v), own), c) in out.iter_mut().zip(&v[..size]).zip(own).zip(&column) {
@@ -178,7 +178,7 @@ impl KrylovNewton {
         let ahead = solution[size] * unit;
         solution.iter_mut().zip(&sizes).for_each(|(x, size)| *x *= size);
         let motion = self.answered(products, &solution[..size], WITHIN * BORDERED, &mut load);
-        let answer = series(&ContactModes::displace(modes.contacts(), motion.as_ref()));
+        let answer = series(&modes.displace(motion.as_ref()));
         let linear = right[..count].iter().zip(border.rate).map(|(r, rate)| r + ahead * rate);
         let mut step: Vec<f64> =
             linear.zip(answer).map(|(linear, answer)| linear + answer).collect();
@@ -203,11 +203,11 @@ impl KrylovNewton {
         load.fill(0.0);
         self.add_tangents(products.loads, step, load);
         let (modes, slots) = (products.modes, products.loads.slots);
-        let mut whole = Mat::zeros(slots, modes.contacts().ncols());
+        let mut whole = Mat::zeros(slots, modes.contacts());
         for (own, &point) in load.chunks_exact(slots).zip(&self.points) {
             whole.col_as_slice_mut(point).copy_from_slice(own);
         }
-        let mut motion = ContactModes::excite(modes.contacts(), whole.as_ref());
+        let mut motion = modes.excite(whole.as_ref());
         modes.answer(products.orders, &mut motion, tolerance);
         motion
     }
@@ -223,7 +223,7 @@ impl KrylovNewton {
         load.fill(0.0);
         self.add_tangents(products.loads, step, load);
         let load = MatRef::from_column_major_slice(load, products.loads.slots, self.points.len());
-        let mut motion = ContactModes::excite(self.shapes.as_ref(), load);
+        let mut motion = self.shapes.excite(load);
         products.modes.answer(products.orders, &mut motion, tolerance);
         motion
     }

@@ -8,7 +8,9 @@ use super::ring_newton::RingNewton;
 use super::slip_jacobian::SlipJacobian;
 use super::unknowns::{gather, scatter};
 use crate::fourier::{Harmonics, SampleTable};
-use crate::structure::{Compliance, ContactModes, ModalOrders, Quantity, Receptance, Request};
+use crate::structure::{
+    Compliance, ContactCoordinates, ModalOrders, Quantity, Receptance, Request,
+};
 use crate::Error;
 use faer::{c64, Mat, MatRef};
 
@@ -93,18 +95,19 @@ impl Linear {
             Self::Modal(orders) => {
                 let Some(modes) = compliance.contact_modes() else { return Ok(()) };
                 let slots = |order| harmonics.slot(order).map(|slot| (order, slot));
-                *orders = modes.orders(harmonics.orders().filter_map(slots), omega)?;
+                let kept: Vec<_> = harmonics.orders().filter_map(slots).collect();
+                *orders = modes.orders(&kept, omega)?;
                 // Harmonics without a load leave the stuck contacts where they are.
                 let forced = compliance.forced_harmonics();
                 let kept = harmonics.orders().filter(|order| forced.contains(order));
                 let own = kept.filter_map(|order| Some((order, harmonics.slot(order)?)));
                 for (order, slot) in own {
                     let rows = if order == 0 { 1 } else { 2 };
-                    let at = modes.orders([(order, 0)].into_iter(), omega)?;
-                    let mut motion = Mat::zeros(rows, modes.modes());
+                    let at = modes.orders(&[(order, 0)], omega)?;
+                    let mut motion = Mat::zeros(rows, modes.size());
                     modes.add_load(&at, &mut motion);
                     modes.answer(&at, &mut motion, EXACT);
-                    let motion = ContactModes::displace(modes.contacts(), motion.as_ref());
+                    let motion = modes.displace(motion.as_ref());
                     for (point, own) in stuck.chunks_exact_mut(harmonics.slots()).enumerate() {
                         (0..rows).for_each(|row| own[slot + row] = motion[(row, point)]);
                     }
@@ -253,15 +256,15 @@ impl Linear {
 }
 
 /// Modal forces of the slip loads of all contacts.
-fn excite(modes: &ContactModes, harmonics: &Harmonics, slip_load: &[f64]) -> Mat<f64> {
-    let (slots, contacts) = (harmonics.slots(), modes.contacts().ncols());
+fn excite(modes: &dyn ContactCoordinates, harmonics: &Harmonics, slip_load: &[f64]) -> Mat<f64> {
+    let (slots, contacts) = (harmonics.slots(), modes.contacts());
     let slip_load = MatRef::from_column_major_slice(slip_load, slots, contacts);
-    ContactModes::excite(modes.contacts(), slip_load)
+    modes.excite(slip_load)
 }
 
 /// Adds the displacements of all contacts by modal coordinates.
-fn add_motion(modes: &ContactModes, coordinates: &Mat<f64>, out: &mut [f64]) {
-    let motion = ContactModes::displace(modes.contacts(), coordinates.as_ref());
+fn add_motion(modes: &dyn ContactCoordinates, coordinates: &Mat<f64>, out: &mut [f64]) {
+    let motion = modes.displace(coordinates.as_ref());
     let entries = motion.col_iter().flat_map(|column| column.iter().copied());
     out.iter_mut().zip(entries).for_each(|(out, u)| *out += u);
 }

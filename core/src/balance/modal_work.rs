@@ -1,7 +1,7 @@
 //! The work of a point whose receptances are never formed, and whether it is less than with them.
 
 use crate::fourier::Harmonics;
-use crate::structure::{Compliance, ContactModes};
+use crate::structure::Compliance;
 
 /// Unknowns of the largest Jacobian that is formed where products with the modes would do.
 const LARGEST_FORMED: usize = 2000;
@@ -17,18 +17,15 @@ const SLIPPING: f64 = 0.5;
 /// How many times less work it has to be: many small products are slower than one factorisation.
 const WORTH: f64 = 4.0;
 
-/// Products with the coupling of the damping within one with the modes.
-const COUPLING: f64 = 4.0;
-
 /// Whether products with the modes are less work than dense receptances and a factorisation.
 pub(super) fn suits(compliance: &dyn Compliance, harmonics: &Harmonics) -> bool {
     let Some(modes) = compliance.contact_modes() else { return false };
     let (contacts, slots) = (compliance.contacts() as f64, harmonics.slots() as f64);
-    let count = modes.modes() as f64;
+    let count = modes.size() as f64;
     let formed = 2.0 * slots * count * contacts * contacts;
     let block = SLIPPING * contacts * slots;
     let dense = formed + FACTORISATIONS * 2.0 / 3.0 * block.powi(3);
-    dense > WORTH * PRODUCTS * product(modes, contacts, slots)
+    dense > WORTH * PRODUCTS * modes.work(contacts, slots)
 }
 
 /// Whether the whole Jacobian is too large to be formed, along a curve too.
@@ -36,18 +33,10 @@ pub(super) fn is_large(compliance: &dyn Compliance, harmonics: &Harmonics) -> bo
     suits(compliance, harmonics) && compliance.contacts() * harmonics.slots() > LARGEST_FORMED
 }
 
-/// Floating-point operations of a product with the modes.
-pub(super) fn product(modes: &ContactModes, contacts: f64, slots: f64) -> f64 {
-    let count = modes.modes() as f64;
-    let coupled = if modes.is_coupled() { COUPLING * count } else { 0.0 };
-    2.0 * slots * count * (2.0 * contacts + coupled)
-}
-
 /// About the time of a Newton step of some contacts that slip, on a common processor \[ns\].
 pub(super) fn of_step(compliance: &dyn Compliance, slots: f64, slipping: f64) -> f64 {
     let Some(modes) = compliance.contact_modes() else { return 0.0 };
     let contacts = compliance.contacts() as f64;
     PER_OPERATION
-        * (PRODUCTS_OF_STEP * product(modes, slipping, slots)
-            + 2.0 * product(modes, contacts, slots))
+        * (PRODUCTS_OF_STEP * modes.work(slipping, slots) + 2.0 * modes.work(contacts, slots))
 }

@@ -9,12 +9,8 @@ use super::massless::StuckModes;
 use super::modes::{resonates, RealModes};
 use super::ports::{HarmonicLoad, Ports};
 use crate::Error;
-use faer::linalg::matmul::matmul;
-use faer::{c64, Accum, Mat, MatRef, Par};
+use faer::{c64, Mat, MatRef};
 use std::sync::OnceLock;
-
-/// Contacts with a load that are gathered at once: their shapes stay in the cache.
-const PANEL: usize = 32;
 
 /// Modes of the stuck structure at its contacts. Series of several harmonics are matrices, slots ×
 /// contacts or slots × modes, with the cosines and sines of a harmonic in neighbouring rows.
@@ -23,7 +19,7 @@ pub struct ContactModes {
     /// Ψᵀ, modes × contacts.
     pub(super) contacts: Mat<f64>,
     /// Φᵀ, modes × N.
-    dofs: Mat<f64>,
+    pub(super) dofs: Mat<f64>,
     /// Whether a mode moves any contact.
     moving: Vec<bool>,
     /// Whether the damping couples a mode to others.
@@ -142,17 +138,8 @@ impl ContactModes {
     }
 
     /// Ψᵀ of all contacts, modes × contacts.
-    #[must_use]
-    pub fn contacts(&self) -> MatRef<'_, f64> {
+    pub(super) fn shapes(&self) -> MatRef<'_, f64> {
         self.contacts.as_ref()
-    }
-
-    /// Ψᵀ of some contacts, modes × contacts.
-    #[must_use]
-    pub fn of_contacts(&self, contacts: &[usize]) -> Mat<f64> {
-        let mut own = Mat::zeros(self.modes(), contacts.len());
-        gather(self.contacts(), contacts, &mut own);
-        own
     }
 
     /// Refuses rigid-body motion under static loads, and an undamped mode at its resonance.
@@ -185,55 +172,6 @@ impl ContactModes {
         self.loads.iter().find(|(order, _)| *order == harmonic).map(|(_, load)| load.as_slice())
     }
 
-    /// Modal forces of slip loads, `q Ψ`; `contacts` are Ψᵀ of the contacts that have some. Those without
-    /// a load are passed over.
-    #[must_use]
-    pub fn excite(contacts: MatRef<'_, f64>, slip_load: MatRef<'_, f64>) -> Mat<f64> {
-        let loaded = |j: &usize| slip_load.col(*j).iter().any(|q| *q != 0.0);
-        let loaded: Vec<usize> = (0..slip_load.ncols()).filter(loaded).collect();
-        // Tall columns, one behind the other, go through the processor twice as fast as rows.
-        let mut forces = Mat::zeros(contacts.nrows(), slip_load.nrows());
-        if loaded.len() == slip_load.ncols() {
-            let par = Par::Seq;
-            matmul(forces.as_mut(), Accum::Replace, contacts, slip_load.transpose(), 1.0, par);
-            return forces.transpose().to_owned();
-        }
-        let mut panel = Mat::zeros(contacts.nrows(), PANEL.min(loaded.len()));
-        for own in loaded.chunks(PANEL) {
-            gather(contacts, own, &mut panel);
-            let loads = Mat::from_fn(own.len(), slip_load.nrows(), |j, i| slip_load[(i, own[j])]);
-            let panel = panel.as_ref().subcols(0, own.len());
-            matmul(forces.as_mut(), Accum::Add, panel, loads.as_ref(), 1.0, Par::Seq);
-        }
-        forces.transpose().to_owned()
-    }
-
-    /// Displacements of modal coordinates at contacts, `y Ψᵀ`.
-    #[must_use]
-    pub fn displace(contacts: MatRef<'_, f64>, coordinates: MatRef<'_, f64>) -> Mat<f64> {
-        let mut motion = Mat::zeros(coordinates.nrows(), contacts.ncols());
-        matmul(motion.as_mut(), Accum::Replace, coordinates, contacts, 1.0, Par::Seq);
-        motion
-    }
-
-    /// Amplitudes of DOFs from the modal coordinates of a harmonic at a slot.
-    pub fn observe(
-        &self,
-        harmonic: usize,
-        slot: usize,
-        coordinates: &Mat<f64>,
-        observe: &[usize],
-        out: &mut [c64],
-    ) {
-        for (x, &dof) in out.iter_mut().zip(observe) {
-            let part = |slot: usize| -> f64 {
-                let shape = self.dofs.col(dof).iter();
-                shape.zip(coordinates.row(slot).iter()).map(|(phi, y)| phi * y).sum()
-            };
-            *x = c64::new(part(slot), if harmonic == 0 { 0.0 } else { -part(slot + 1) });
-        }
-    }
-
     /// Number of DOFs.
     #[must_use]
     pub fn dofs(&self) -> usize {
@@ -244,16 +182,6 @@ impl ContactModes {
     pub(super) fn narrowest_bandwidth(&self) -> f64 {
         let modes = self.damping.iter().zip(&self.inertia).filter(|(_, inertia)| **inertia > 0.0);
         modes.map(|(c, _)| c.abs()).fold(f64::MAX, f64::min)
-    }
-}
-
-/// Copies some columns side by side into a matrix that is no narrower.
-pub(super) fn gather(from: MatRef<'_, f64>, columns: &[usize], into: &mut Mat<f64>) {
-    for (at, &j) in columns.iter().enumerate() {
-        match from.col(j).try_as_col_major() {
-            Some(column) => into.col_as_slice_mut(at).copy_from_slice(column.as_slice()),
-            None => into.col_mut(at).copy_from(from.col(j)),
-        }
     }
 }
 

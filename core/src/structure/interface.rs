@@ -2,6 +2,7 @@
 //! contacts, and nothing of the size of the structure beside them. Receptances are formed only for
 //! those who ask.
 
+use super::contact_coordinates::ContactCoordinates;
 use super::contact_modes::ContactModes;
 use super::modes::{squared_frequencies, RealModes};
 use super::ports::{forced_harmonics, Ports};
@@ -69,7 +70,7 @@ impl InterfaceCompliance {
 
 impl Compliance for InterfaceCompliance {
     fn contacts(&self) -> usize {
-        self.modes.contacts().ncols()
+        self.modes.shapes().ncols()
     }
 
     fn dofs(&self) -> usize {
@@ -80,7 +81,7 @@ impl Compliance for InterfaceCompliance {
         &self.outline
     }
 
-    fn contact_modes(&self) -> Option<&ContactModes> {
+    fn contact_modes(&self) -> Option<&dyn ContactCoordinates> {
         Some(&self.modes)
     }
 
@@ -91,7 +92,7 @@ impl Compliance for InterfaceCompliance {
     fn receptance(&self, harmonic: usize, omega: f64, out: &mut Receptance) -> Result<(), Error> {
         out.reset(self.contacts());
         self.modes.check(harmonic, omega)?;
-        let rows = self.modes.contacts();
+        let rows = self.modes.shapes();
         let complex = |i: usize, j: usize| c64::new(rows[(i, j)], 0.0);
         let forces = Mat::from_fn(rows.nrows(), rows.ncols(), complex);
         let load = self.modes.load(harmonic);
@@ -127,11 +128,11 @@ impl Compliance for InterfaceCompliance {
     fn displacement(&self, request: &Request<'_>, out: &mut [c64]) -> Result<(), Error> {
         let Request { harmonic, omega, quantity, slip_load, observe, .. } = *request;
         let slots = if harmonic == 0 { 1 } else { 2 };
-        let at = self.modes.orders([(harmonic, 0)].into_iter(), omega);
+        let at = self.modes.orders(&[(harmonic, 0)], omega);
         let at = at.map_err(|(_, error)| error)?;
         let part = |row: usize, q: &c64| if row == 0 { q.re } else { -q.im };
         let slip = Mat::from_fn(slots, slip_load.len(), |i, j| part(i, &slip_load[j]));
-        let mut motion = ContactModes::excite(self.modes.contacts(), slip.as_ref());
+        let mut motion = self.modes.excite(slip.as_ref());
         if quantity != Quantity::OfSlip {
             self.modes.add_load(&at, &mut motion);
         }

@@ -4,7 +4,9 @@
 //! harmonic k produces when all contacts stick. That form stays well scaled at high harmonics,
 //! needs no partition of the matrices and takes ω as an unknown.
 
+mod contact_coordinates;
 mod contact_modes;
+mod contact_shapes;
 mod cyclic;
 mod direct;
 mod flexibility;
@@ -22,16 +24,19 @@ mod restraint;
 mod ring;
 mod ring_compliance;
 mod ring_order;
+mod sparse_compliance;
+mod sparse_contacts;
+mod sparse_matrices;
 mod spectrum;
 mod system;
 
-pub use contact_modes::ContactModes;
+pub use contact_coordinates::{ContactCoordinates, ModalOrders};
+pub use contact_shapes::ContactShapes;
 pub use cyclic::{CyclicCompliance, CyclicMatrix, CyclicPorts, CyclicStructure};
 pub use direct::DirectCompliance;
 pub use flutter_compliance::{FlutterCompliance, StuckMode};
 pub use interface::InterfaceCompliance;
 pub use modal::{compliance, ModalBase, ModalCompliance};
-pub use modal_answer::ModalOrders;
 pub(crate) use modes::complex;
 pub use modes::{modes, natural_frequencies, HermitianModes, Modes, RealModes};
 pub use poles::Poles;
@@ -164,9 +169,9 @@ pub trait Compliance: Send + Sync {
         None
     }
 
-    /// The contacts seen from the modes of the stuck structure, if there are many: their equations need
-    /// no receptance at all.
-    fn contact_modes(&self) -> Option<&ContactModes> {
+    /// The contacts seen from the modes of the stuck structure, or from its DOFs, if there are many: their
+    /// equations need no receptance at all.
+    fn contact_modes(&self) -> Option<&dyn ContactCoordinates> {
         None
     }
 

@@ -13,6 +13,7 @@ use super::massless::StuckModes;
 use super::modes::{complex, modes, HermitianModes, RealModes};
 use super::ports::{forced_harmonics, HarmonicLoad, Ports};
 use super::proportional::{follows_mass, ModalDamping};
+use super::sparse_compliance::SparseCompliance;
 use super::spectrum::{complex_modes, Spectrum};
 use super::{Compliance, DirectCompliance, Outline, Receptance, Structure};
 use crate::Error;
@@ -87,6 +88,9 @@ pub fn compliance(
     structure: &Structure,
     ports: &Ports,
 ) -> Result<(Box<dyn Compliance>, &'static str), Error> {
+    if let Some(sparse) = SparseCompliance::new(structure, ports)? {
+        return Ok((Box::new(sparse), "sparse factors"));
+    }
     if let Some(interface) = InterfaceCompliance::new(structure, ports)? {
         let base = interface.base();
         return Ok((Box::new(interface), base));

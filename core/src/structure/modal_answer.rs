@@ -1,15 +1,19 @@
 //! What the modes of the stuck structure answer to forces at the harmonics of a frequency.
 
-use super::contact_modes::{gather, ContactModes};
+use super::contact_coordinates::{ContactCoordinates, Inverse, ModalOrders, Order};
+use super::contact_modes::ContactModes;
+use super::contact_shapes::{displace, excite, gather, ContactShapes};
 use crate::solve::{gmres, KrylovSettings};
 use crate::Error;
 use faer::linalg::matmul::matmul;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::linalg::solvers::Solve as _;
-use faer::{c64, Accum, Mat, Par};
+use faer::{c64, Accum, Mat, MatRef, Par};
 
 /// Products with the coupling of the damping: far more than it takes.
 const MOST_PRODUCTS: usize = 400;
+/// … which count as so many within one with the modes.
+const COUPLING: f64 = 4.0;
 /// Least modulus of a dynamic stiffness, relative to the squared frequency.
 const FLOOR: f64 = 1e-9;
 
@@ -18,57 +22,7 @@ const SLOWEST: usize = 10;
 /// … where inertia and damping change their answers by no more than this.
 const QUASI_STATIC: f64 = 5e-3;
 
-/// The dynamic stiffness of every mode at the harmonics of a frequency.
-#[derive(Debug, Clone, Default)]
-pub struct ModalOrders {
-    /// Slot, `kω`, and the inverse of the diagonal of Z for every mode.
-    orders: Vec<(usize, f64, Vec<c64>)>,
-    harmonics: Vec<usize>,
-}
-
 impl ContactModes {
-    /// Adds the external load to modal forces, slots × modes.
-    pub fn add_load(&self, at: &ModalOrders, forces: &mut Mat<f64>) {
-        for ((slot, ..), order) in at.orders.iter().zip(&at.harmonics) {
-            for (j, p) in self.load(*order).into_iter().flatten().enumerate() {
-                forces[(*slot, j)] += p.re;
-                if *order > 0 {
-                    forces[(slot + 1, j)] -= p.im;
-                }
-            }
-        }
-    }
-
-    /// Ψᵀ of some contacts in the slowest modes, and the flexibility of all others between these contacts;
-    /// nothing where the others do not follow their loads at once. What the two answer differs from
-    /// the whole by some thousandths of that flexibility.
-    #[must_use]
-    pub fn quasi_static(
-        &self,
-        at: &ModalOrders,
-        contacts: &[usize],
-    ) -> Option<(Mat<f64>, Mat<f64>)> {
-        let slow = self.modes() / SLOWEST;
-        let one = c64::new(1.0, 0.0);
-        let follows = |inverse: &[c64]| {
-            let others = inverse.iter().zip(&self.omega_squared).skip(slow);
-            others.map(|(z, k)| (z * *k - one).norm()).all(|change| change <= QUASI_STATIC)
-        };
-        if self.is_coupled() || !at.orders.iter().all(|(.., inverse)| follows(inverse)) {
-            return None;
-        }
-        let flexibility = self.flexibility.get_or_init(|| self.flexibility_behind(slow));
-        let mut shapes = Mat::zeros(slow, contacts.len());
-        gather(self.contacts().subrows(0, slow), contacts, &mut shapes);
-        let mut own = Mat::zeros(contacts.len(), contacts.len());
-        for (at, &j) in contacts.iter().enumerate() {
-            let column = flexibility.col_as_slice(j);
-            let entries = own.col_as_slice_mut(at).iter_mut().zip(contacts);
-            entries.for_each(|(entry, &i)| *entry = column[i]);
-        }
-        Some((shapes, own))
-    }
-
     /// `Σ ψ ψᵀ / ω²` of all modes behind the first ones.
     fn flexibility_behind(&self, first: usize) -> Mat<f64> {
         let (count, size) = (self.modes() - first, self.contacts.ncols());
@@ -76,7 +30,7 @@ impl ContactModes {
         // A part of the modes at a time needs no copy of the whole.
         for start in (0..count).step_by(size.clamp(1, 256)) {
             let rows = (count - start).min(size.clamp(1, 256));
-            let own = self.contacts().subrows(first + start, rows);
+            let own = self.shapes().subrows(first + start, rows);
             let carried = Mat::from_fn(rows, size, |j, i| {
                 own[(j, i)] / self.omega_squared[first + start + j]
             });
@@ -96,31 +50,6 @@ impl ContactModes {
             (0..j).for_each(|i| out[(i, j)] = out[(j, i)]);
         }
         out
-    }
-
-    /// The dynamic stiffness at a frequency [rad/s], of harmonics with their slots.
-    ///
-    /// # Errors
-    /// The harmonic at which the structure is singular, and why.
-    pub fn orders(
-        &self,
-        harmonics: impl Iterator<Item = (usize, usize)>,
-        omega: f64,
-    ) -> Result<ModalOrders, (usize, Error)> {
-        let (mut orders, mut kept) = (Vec::new(), Vec::new());
-        for (order, slot) in harmonics {
-            let rate = order as f64 * omega;
-            self.check(order, omega).map_err(|error| (order, error))?;
-            let inverse = (0..self.modes()).map(|j| {
-                let own = self.stiffness(j, rate);
-                // Met exactly by a mode that damping only couples: the iteration sees to the rest.
-                let least = FLOOR * rate * rate;
-                if own.norm() < least { c64::new(0.0, least) } else { own }.inv()
-            });
-            orders.push((slot, rate, inverse.collect()));
-            kept.push(order);
-        }
-        Ok(ModalOrders { orders, harmonics: kept })
     }
 
     /// `Z⁻¹` of the columns of a matrix of complex modal forces, by a factorisation where the damping
@@ -154,10 +83,111 @@ impl ContactModes {
                 - c64::new(0.0, k) * (self.damping[i] * y + other)
         })
     }
+}
 
-    /// Turns modal forces into modal coordinates, `Z⁻¹ f`, to a relative tolerance where the damping
-    /// couples modes.
-    pub fn answer(&self, at: &ModalOrders, forces: &mut Mat<f64>, tolerance: f64) {
+impl ContactCoordinates for ContactModes {
+    fn size(&self) -> usize {
+        self.modes()
+    }
+
+    fn contacts(&self) -> usize {
+        self.contacts.ncols()
+    }
+
+    fn work(&self, contacts: f64, slots: f64) -> f64 {
+        let count = self.modes() as f64;
+        let coupled = if self.is_coupled() { COUPLING * count } else { 0.0 };
+        2.0 * slots * count * (2.0 * contacts + coupled)
+    }
+
+    fn effort(&self) -> f64 {
+        10.0 * self.modes() as f64
+    }
+
+    fn excite(&self, load: MatRef<'_, f64>) -> Mat<f64> {
+        excite(self.shapes(), load)
+    }
+
+    fn displace(&self, coordinates: MatRef<'_, f64>) -> Mat<f64> {
+        displace(self.shapes(), coordinates)
+    }
+
+    fn part(&self, contacts: &[usize]) -> ContactShapes {
+        let mut own = Mat::zeros(self.modes(), contacts.len());
+        gather(self.shapes(), contacts, &mut own);
+        ContactShapes::Modal(own)
+    }
+
+    fn add_load(&self, at: &ModalOrders, forces: &mut Mat<f64>) {
+        at.add(|harmonic| self.load(harmonic), forces);
+    }
+
+    fn quasi_static(
+        &self,
+        at: &ModalOrders,
+        contacts: &[usize],
+    ) -> Option<(ContactShapes, Mat<f64>)> {
+        let slow = self.modes() / SLOWEST;
+        let one = c64::new(1.0, 0.0);
+        let follows = |order: &Order| {
+            let Inverse::Diagonal(inverse) = &order.inverse else { return false };
+            let others = inverse.iter().zip(&self.omega_squared).skip(slow);
+            others.map(|(z, k)| (z * *k - one).norm()).all(|change| change <= QUASI_STATIC)
+        };
+        if self.is_coupled() || !at.orders.iter().all(follows) {
+            return None;
+        }
+        let flexibility = self.flexibility.get_or_init(|| self.flexibility_behind(slow));
+        let mut shapes = Mat::zeros(slow, contacts.len());
+        gather(self.shapes().subrows(0, slow), contacts, &mut shapes);
+        let mut own = Mat::zeros(contacts.len(), contacts.len());
+        for (at, &j) in contacts.iter().enumerate() {
+            let column = flexibility.col_as_slice(j);
+            let entries = own.col_as_slice_mut(at).iter_mut().zip(contacts);
+            entries.for_each(|(entry, &i)| *entry = column[i]);
+        }
+        Some((ContactShapes::Modal(shapes), own))
+    }
+
+    fn orders(
+        &self,
+        harmonics: &[(usize, usize)],
+        omega: f64,
+    ) -> Result<ModalOrders, (usize, Error)> {
+        let mut orders = Vec::with_capacity(harmonics.len());
+        for &(order, slot) in harmonics {
+            let rate = order as f64 * omega;
+            self.check(order, omega).map_err(|error| (order, error))?;
+            let inverse = (0..self.modes()).map(|j| {
+                let own = self.stiffness(j, rate);
+                // Met exactly by a mode that damping only couples: the iteration sees to the rest.
+                let least = FLOOR * rate * rate;
+                if own.norm() < least { c64::new(0.0, least) } else { own }.inv()
+            });
+            let inverse = Inverse::Diagonal(inverse.collect());
+            orders.push(Order { harmonic: order, slot, rate, inverse });
+        }
+        Ok(ModalOrders { orders })
+    }
+
+    fn observe(
+        &self,
+        harmonic: usize,
+        slot: usize,
+        coordinates: &Mat<f64>,
+        observe: &[usize],
+        out: &mut [c64],
+    ) {
+        for (x, &dof) in out.iter_mut().zip(observe) {
+            let part = |slot: usize| -> f64 {
+                let shape = self.dofs.col(dof).iter();
+                shape.zip(coordinates.row(slot).iter()).map(|(phi, y)| phi * y).sum()
+            };
+            *x = c64::new(part(slot), if harmonic == 0 { 0.0 } else { -part(slot + 1) });
+        }
+    }
+
+    fn answer(&self, at: &ModalOrders, forces: &mut Mat<f64>, tolerance: f64) {
         let Some(coupling) = &self.coupling else { return at.divide(forces) };
         let (slots, modes) = (forces.nrows(), forces.ncols());
         let rhs: Vec<f64> = (0..modes).flat_map(|j| forces.col(j).iter().copied()).collect();
@@ -172,7 +202,7 @@ impl ContactModes {
             matmul(work.as_mut(), Accum::Replace, y.as_ref(), coupling.as_ref(), 1.0, Par::Seq);
             out.copy_from_slice(v);
             for (j, out) in out.chunks_exact_mut(slots).enumerate() {
-                for &(slot, rate, _) in at.orders.iter().filter(|(_, rate, _)| *rate > 0.0) {
+                for &Order { slot, rate, .. } in at.orders.iter().filter(|own| own.rate > 0.0) {
                     out[slot] += rate * work[(slot + 1, j)];
                     out[slot + 1] -= rate * work[(slot, j)];
                 }
@@ -189,11 +219,10 @@ impl ContactModes {
         at.divide(forces);
     }
 
-    /// Rate of change with ω of modal coordinates under fixed forces: `−Z⁻¹ dZ/dω y`.
-    pub fn answer_rate(&self, at: &ModalOrders, coordinates: &mut Mat<f64>, tolerance: f64) {
+    fn answer_rate(&self, at: &ModalOrders, coordinates: &mut Mat<f64>, tolerance: f64) {
         let coupled = self.coupling.as_ref().map(|coupling| &*coordinates * coupling);
-        for ((slot, rate, _), order) in at.orders.iter().zip(&at.harmonics) {
-            let order = *order as f64;
+        for Order { harmonic, slot, rate, .. } in &at.orders {
+            let order = *harmonic as f64;
             for j in 0..coordinates.ncols() {
                 if order == 0.0 {
                     coordinates[(*slot, j)] = 0.0;
@@ -210,21 +239,5 @@ impl ContactModes {
             }
         }
         self.answer(at, coordinates, tolerance);
-    }
-}
-
-impl ModalOrders {
-    /// Divides by the diagonal of Z.
-    fn divide(&self, forces: &mut Mat<f64>) {
-        for (j, mut column) in forces.col_iter_mut().enumerate() {
-            for (slot, rate, inverse) in &self.orders {
-                if *rate == 0.0 {
-                    column[*slot] *= inverse[j].re;
-                    continue;
-                }
-                let y = inverse[j] * c64::new(column[*slot], -column[slot + 1]);
-                (column[*slot], column[slot + 1]) = (y.re, -y.im);
-            }
-        }
     }
 }

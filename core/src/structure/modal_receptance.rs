@@ -1,5 +1,6 @@
 //! What a modal compliance answers: receptances and displacements as sums over its modes.
 
+use super::contact_coordinates::ContactCoordinates;
 use super::contact_modes::ContactModes;
 use super::modal::{ModalBase, ModalCompliance};
 use super::modes::resonates;
@@ -128,8 +129,8 @@ impl Compliance for ModalCompliance {
         &self.outline
     }
 
-    fn contact_modes(&self) -> Option<&ContactModes> {
-        self.contact_modes.as_deref()
+    fn contact_modes(&self) -> Option<&dyn ContactCoordinates> {
+        self.contact_modes.as_deref().map(|modes| modes as &dyn ContactCoordinates)
     }
 
     fn receptance(&self, harmonic: usize, omega: f64, out: &mut Receptance) -> Result<(), Error> {

@@ -1,0 +1,131 @@
+//! What coordinates displace at contacts, and what loads on contacts are on coordinates.
+
+use faer::linalg::matmul::matmul;
+use faer::{Accum, Mat, MatRef, Par};
+
+/// Contacts with a load that are gathered at once: their shapes stay in the cache.
+const PANEL: usize = 32;
+
+/// Displacements of some contacts per coordinate of a structure. Series of several harmonics are
+/// matrices, slots × contacts or slots × coordinates.
+#[derive(Debug, Clone)]
+pub enum ContactShapes {
+    /// Ψᵀ of modes, modes × contacts.
+    Modal(Mat<f64>),
+    /// Rows of B that hold few numbers each.
+    Few(SparseRows),
+}
+
+/// Rows of B by the numbers that they hold.
+#[derive(Debug, Clone, Default)]
+pub struct SparseRows {
+    /// Degree of freedom and number.
+    pub(super) entries: Vec<Vec<(usize, f64)>>,
+    pub(super) dofs: usize,
+}
+
+impl Default for ContactShapes {
+    fn default() -> Self {
+        Self::Few(SparseRows::default())
+    }
+}
+
+impl ContactShapes {
+    /// Forces on the coordinates from loads on the contacts.
+    #[must_use]
+    pub fn excite(&self, load: MatRef<'_, f64>) -> Mat<f64> {
+        match self {
+            Self::Modal(shapes) => excite(shapes.as_ref(), load),
+            Self::Few(rows) => rows.excite(load),
+        }
+    }
+
+    /// Displacements of the contacts.
+    #[must_use]
+    pub fn displace(&self, coordinates: MatRef<'_, f64>) -> Mat<f64> {
+        match self {
+            Self::Modal(shapes) => displace(shapes.as_ref(), coordinates),
+            Self::Few(rows) => rows.displace(coordinates),
+        }
+    }
+}
+
+impl SparseRows {
+    pub(super) fn of(rows: MatRef<'_, f64>) -> Self {
+        let mut entries = vec![Vec::new(); rows.nrows()];
+        for (dof, column) in rows.col_iter().enumerate() {
+            for (row, share) in entries.iter_mut().zip(column.iter()) {
+                if *share != 0.0 {
+                    row.push((dof, *share));
+                }
+            }
+        }
+        Self { entries, dofs: rows.ncols() }
+    }
+
+    pub(super) fn part(&self, contacts: &[usize]) -> Self {
+        let entries = contacts.iter().map(|&contact| self.entries[contact].clone()).collect();
+        Self { entries, dofs: self.dofs }
+    }
+
+    pub(super) fn excite(&self, load: MatRef<'_, f64>) -> Mat<f64> {
+        let mut forces: Mat<f64> = Mat::zeros(load.nrows(), self.dofs);
+        for (row, load) in self.entries.iter().zip(load.col_iter()) {
+            for &(dof, share) in row {
+                let own = forces.col_as_slice_mut(dof).iter_mut().zip(load.iter());
+                own.for_each(|(force, load)| *force += share * load);
+            }
+        }
+        forces
+    }
+
+    pub(super) fn displace(&self, coordinates: MatRef<'_, f64>) -> Mat<f64> {
+        let mut motion: Mat<f64> = Mat::zeros(coordinates.nrows(), self.entries.len());
+        for (contact, row) in self.entries.iter().enumerate() {
+            for &(dof, share) in row {
+                let own = motion.col_as_slice_mut(contact).iter_mut();
+                own.zip(coordinates.col(dof).iter()).for_each(|(u, x)| *u += share * x);
+            }
+        }
+        motion
+    }
+}
+
+/// Modal forces of loads, `q Ψ`; `contacts` are Ψᵀ of the contacts that have some. Those without a load
+/// are passed over.
+pub(super) fn excite(contacts: MatRef<'_, f64>, load: MatRef<'_, f64>) -> Mat<f64> {
+    let loaded = |j: &usize| load.col(*j).iter().any(|q| *q != 0.0);
+    let loaded: Vec<usize> = (0..load.ncols()).filter(loaded).collect();
+    // Tall columns, one behind the other, go through the processor twice as fast as rows.
+    let mut forces = Mat::zeros(contacts.nrows(), load.nrows());
+    if loaded.len() == load.ncols() {
+        let par = Par::Seq;
+        matmul(forces.as_mut(), Accum::Replace, contacts, load.transpose(), 1.0, par);
+        return forces.transpose().to_owned();
+    }
+    let mut panel = Mat::zeros(contacts.nrows(), PANEL.min(loaded.len()));
+    for own in loaded.chunks(PANEL) {
+        gather(contacts, own, &mut panel);
+        let loads = Mat::from_fn(own.len(), load.nrows(), |j, i| load[(i, own[j])]);
+        let panel = panel.as_ref().subcols(0, own.len());
+        matmul(forces.as_mut(), Accum::Add, panel, loads.as_ref(), 1.0, Par::Seq);
+    }
+    forces.transpose().to_owned()
+}
+
+/// Displacements of modal coordinates at contacts, `y Ψᵀ`.
+pub(super) fn displace(contacts: MatRef<'_, f64>, coordinates: MatRef<'_, f64>) -> Mat<f64> {
+    let mut motion = Mat::zeros(coordinates.nrows(), contacts.ncols());
+    matmul(motion.as_mut(), Accum::Replace, coordinates, contacts, 1.0, Par::Seq);
+    motion
+}
+
+/// Copies some columns side by side into a matrix that is no narrower.
+pub(super) fn gather(from: MatRef<'_, f64>, columns: &[usize], into: &mut Mat<f64>) {
+    for (at, &j) in columns.iter().enumerate() {
+        match from.col(j).try_as_col_major() {
+            Some(column) => into.col_as_slice_mut(at).copy_from_slice(column.as_slice()),
+            None => into.col_mut(at).copy_from(from.col(j)),
+        }
+    }
+}
