@@ -88,9 +88,7 @@ impl Problem {
         let contacts = contacts.into_iter().map(contact).collect::<PyResult<Vec<_>>>()?;
         let loads = harmonic_loads(forces);
         Self::of(py, move || {
-            let structure = Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref())?;
-            // The decomposition needs the room.
-            drop((mass, damping, stiffness));
+            let structure = Structure::of(mass, damping, stiffness)?;
             Model::new(structure.with_law(proportional), contacts, loads)
         })
     }

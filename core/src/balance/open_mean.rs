@@ -37,9 +37,7 @@ impl Condensed<'_> {
         if !matches!(self.linear, Linear::Modal(_)) {
             return false;
         }
-        let compliance = self.model.compliance();
-        let free = compliance.free_frequencies().first();
-        free.zip(compliance.stuck_frequencies().first())
-            .is_some_and(|(free, stuck)| *free <= RIGID * stuck)
+        let lowest = self.model.compliance().lowest_frequencies();
+        lowest.is_some_and(|[stuck, free]| free <= RIGID * stuck)
     }
 }

@@ -65,10 +65,14 @@ impl Model {
         for harmonic in harmonics.filter(|&k| k > 0) {
             let (order, is_forced) = (harmonic as f64, forced.contains(&harmonic));
             let Some(states) = self.states_at(harmonic)? else {
-                let stuck = self.compliance.stuck_frequencies().iter();
-                let natural = stuck.chain(self.compliance.free_frequencies());
+                if !is_forced {
+                    continue;
+                }
+                let band = [low * order, high * order];
+                let natural =
+                    [true, false].map(|stuck| self.compliance.frequencies_between(stuck, band));
                 let bandwidth = self.compliance.narrowest_bandwidth() / order;
-                let at = natural.map(|w| w / order).filter(|&w| is_forced && inside(w));
+                let at = natural.into_iter().flatten().map(|w| w / order).filter(|&w| inside(w));
                 found.extend(at.map(|omega| Resonance {
                     omega,
                     bandwidth,

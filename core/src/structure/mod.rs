@@ -27,6 +27,7 @@ mod ring_order;
 mod sparse_compliance;
 mod sparse_contacts;
 mod sparse_matrices;
+mod sparse_spectrum;
 mod spectrum;
 mod system;
 
@@ -178,6 +179,19 @@ pub trait Compliance: Send + Sync {
     /// Natural frequencies of the stuck structure, ascending, where they are known [rad/s].
     fn stuck_frequencies(&self) -> &[f64] {
         &self.outline().stuck
+    }
+
+    /// Natural frequencies of the stuck structure, or of that without contacts, in `[low, high]`, ascending
+    /// [rad/s].
+    fn frequencies_between(&self, stuck: bool, [low, high]: [f64; 2]) -> Vec<f64> {
+        let all = if stuck { self.stuck_frequencies() } else { self.free_frequencies() };
+        all.iter().copied().filter(|w| (low..=high).contains(w)).collect()
+    }
+
+    /// Lowest natural frequency of the stuck structure and of that without contacts, where they are known
+    /// [rad/s].
+    fn lowest_frequencies(&self) -> Option<[f64; 2]> {
+        Some([*self.stuck_frequencies().first()?, *self.free_frequencies().first()?])
     }
 
     /// Highest natural frequency of the stuck structure, or about it [rad/s].

@@ -111,6 +111,18 @@ impl Compliance for SparseCompliance {
         self.frequencies(true)
     }
 
+    fn frequencies_between(&self, stuck: bool, band: [f64; 2]) -> Vec<f64> {
+        let found = self.contacts.between(stuck, band);
+        found.unwrap_or_else(|| {
+            let all = self.frequencies(stuck).iter().copied();
+            all.filter(|w| (band[0]..=band[1]).contains(w)).collect()
+        })
+    }
+
+    fn lowest_frequencies(&self) -> Option<[f64; 2]> {
+        Some(self.contacts.lowest())
+    }
+
     fn highest_frequency(&self) -> f64 {
         self.contacts.highest()
     }

@@ -4,9 +4,11 @@
 
 use super::contact_coordinates::{ContactCoordinates, Inverse, ModalOrders, Order};
 use super::contact_shapes::{ContactShapes, SparseRows};
+use super::flexibility::RIGID_BODY;
 use super::modes::resonates;
 use super::ports::{HarmonicLoad, Ports};
 use super::sparse_matrices::{at, fill, pattern, Sparse};
+use super::sparse_spectrum::squared_between;
 use super::Structure;
 use crate::Error;
 use faer::linalg::solvers::Solve as _;
@@ -40,8 +42,10 @@ pub(super) struct SparseContacts {
     /// Numbers in a factor.
     fill: usize,
     loads: Vec<HarmonicLoad>,
-    /// Of the mode of the lowest frequency, squared, and its damping over its mass.
+    /// Of the stuck mode of the lowest frequency, squared, and its damping over its mass.
     lowest: [f64; 2],
+    /// Lowest squared frequency without contacts.
+    lowest_free: f64,
     /// Highest squared frequency, or about it.
     highest: f64,
 }
@@ -74,6 +78,7 @@ impl SparseContacts {
             free: at(&places, structure.stiffness())?,
             loads: ports.loads.clone(),
             lowest: [0.0; 2],
+            lowest_free: 0.0,
             places,
             mass,
             damping,
@@ -82,13 +87,17 @@ impl SparseContacts {
             fill,
             highest,
         };
-        own.lowest = own.lowest_mode()?;
+        own.lowest = own.lowest_mode(&own.stiffness)?;
+        if own.lowest[0] <= RIGID_BODY * own.highest {
+            return None;
+        }
+        own.lowest_free = own.lowest_mode(&own.free).map_or(0.0, |[squared, _]| squared);
         Some(own)
     }
 
-    /// Squared frequency and damping of the lowest mode; nothing where nothing holds it.
-    fn lowest_mode(&self) -> Option<[f64; 2]> {
-        let factors = self.factored(0.0)?;
+    /// Squared frequency and damping of the lowest mode with a stiffness; nothing where nothing holds it.
+    fn lowest_mode(&self, stiffness: &Sparse) -> Option<[f64; 2]> {
+        let factors = self.factored(stiffness, 0.0)?;
         let mut shape = self.any_shape();
         let mut squared = f64::MAX;
         for _ in 0..STEPS {
@@ -96,13 +105,12 @@ impl SparseContacts {
             factors.solve_in_place(next.as_mut());
             let size = self.product(&self.mass, &next).sqrt();
             shape = faer::Scale(c64::new(1.0 / size, 0.0)) * next;
-            let before = std::mem::replace(&mut squared, self.product(&self.stiffness, &shape));
+            let before = std::mem::replace(&mut squared, self.product(stiffness, &shape));
             if (squared - before).abs() <= SETTLED * squared.abs() {
                 break;
             }
         }
-        let held = squared > super::flexibility::RIGID_BODY * self.highest;
-        (held && squared.is_finite()).then(|| [squared, self.product(&self.damping, &shape)])
+        squared.is_finite().then(|| [squared, self.product(&self.damping, &shape)])
     }
 
     /// A shape that holds some of every mode.
@@ -128,8 +136,8 @@ impl SparseContacts {
     }
 
     /// Factors `K + iωC − ω²M`.
-    fn factored(&self, rate: f64) -> Option<Lu<usize, c64>> {
-        let parts = self.stiffness.val().iter().zip(self.damping.val()).zip(self.mass.val());
+    fn factored(&self, stiffness: &Sparse, rate: f64) -> Option<Lu<usize, c64>> {
+        let parts = stiffness.val().iter().zip(self.damping.val()).zip(self.mass.val());
         let values = parts.map(|((k, c), m)| c64::new(k - rate * rate * m, rate * c)).collect();
         let symbolic = self.stiffness.symbolic().to_owned().ok()?;
         let dynamic = SparseColMat::new(symbolic, values);
@@ -148,7 +156,7 @@ impl SparseContacts {
             }
             Error::UndampedResonance { omega, harmonic, natural: rate }
         };
-        let factors = self.factored(rate).ok_or_else(singular)?;
+        let factors = self.factored(&self.stiffness, rate).ok_or_else(singular)?;
         if harmonic == 0 {
             return Ok(factors);
         }
@@ -204,6 +212,18 @@ impl SparseContacts {
     /// Highest natural frequency, or about it [rad/s].
     pub(super) fn highest(&self) -> f64 {
         self.highest.sqrt()
+    }
+
+    /// Lowest natural frequencies of the stuck structure and of that without contacts [rad/s].
+    pub(super) fn lowest(&self) -> [f64; 2] {
+        [self.lowest[0], self.lowest_free].map(|squared| squared.max(0.0).sqrt())
+    }
+
+    /// Natural frequencies in a band, all contacts stuck or none there [rad/s].
+    pub(super) fn between(&self, stuck: bool, band: [f64; 2]) -> Option<Vec<f64>> {
+        let stiffness = if stuck { &self.stiffness } else { &self.free };
+        let squared = squared_between(&self.mass, stiffness, band.map(|w| w * w))?;
+        Some(squared.into_iter().map(f64::sqrt).collect())
     }
 
     /// Mass and stiffness, all contacts stuck or none there.

@@ -1,6 +1,7 @@
 //! Mass, damping and stiffness.
 
 use super::massless::{substitute, trace, without_mass, StuckModes};
+use super::sparse_matrices::is_positive;
 use crate::Error;
 use faer::{Mat, MatRef};
 
@@ -31,8 +32,20 @@ impl Structure {
         damping: MatRef<'_, f64>,
         stiffness: MatRef<'_, f64>,
     ) -> Result<Self, Error> {
+        Self::of(mass.to_owned(), damping.to_owned(), stiffness.to_owned())
+    }
+
+    /// The same of matrices that it may keep.
+    ///
+    /// # Errors
+    /// As [`Structure::new`].
+    pub fn of(
+        mut mass: Mat<f64>,
+        damping: Mat<f64>,
+        mut stiffness: Mat<f64>,
+    ) -> Result<Self, Error> {
         let size = mass.nrows();
-        for (entry, matrix) in [("mass", mass), ("damping", damping), ("stiffness", stiffness)] {
+        for (entry, matrix) in [("mass", &mass), ("damping", &damping), ("stiffness", &stiffness)] {
             if (matrix.nrows(), matrix.ncols()) != (size, size) || size == 0 {
                 return Err(Error::shape(
                     entry,
@@ -52,18 +65,14 @@ impl Structure {
                 }
             }
         }
-        let massless = without_mass(mass);
-        let mut mass = symmetric("mass", mass)?;
+        let massless = without_mass(mass.as_ref());
+        symmetrise("mass", &mut mass)?;
+        symmetrise("stiffness", &mut stiffness)?;
         trace(&mut mass, &massless);
-        let structure = Self {
-            mass,
-            damping: damping.to_owned(),
-            stiffness: symmetric("stiffness", stiffness)?,
-            proportional: false,
-            massless,
-        };
-        structure.mass.llt(faer::Side::Lower).map_err(|_| Error::IndefiniteMass)?;
-        Ok(structure)
+        if !is_positive(mass.as_ref()) {
+            return Err(Error::IndefiniteMass);
+        }
+        Ok(Self { mass, damping, stiffness, proportional: false, massless })
     }
 
     /// The same structure, `proportional` if a law made its damping, such as `C = a M + b K` or
@@ -180,7 +189,7 @@ impl Structure {
     }
 }
 
-fn symmetric(entry: &str, matrix: MatRef<'_, f64>) -> Result<Mat<f64>, Error> {
+fn symmetrise(entry: &str, matrix: &mut Mat<f64>) -> Result<(), Error> {
     let size = matrix.nrows();
     let largest = matrix.norm_max();
     for j in 0..size {
@@ -195,5 +204,11 @@ fn symmetric(entry: &str, matrix: MatRef<'_, f64>) -> Result<Mat<f64>, Error> {
             }
         }
     }
-    Ok(Mat::from_fn(size, size, |i, j| 0.5 * (matrix[(i, j)] + matrix[(j, i)])))
+    for j in 0..size {
+        for i in 0..j {
+            let mean = 0.5 * (matrix[(i, j)] + matrix[(j, i)]);
+            (matrix[(i, j)], matrix[(j, i)]) = (mean, mean);
+        }
+    }
+    Ok(())
 }

@@ -30,6 +30,9 @@ __all__ = ["DampingLaw", "ModalDamping", "Rayleigh", "Structure", "join"]
 
 # Printed matrices carry rounded digits; anything larger than this is a wrong matrix.
 _ASYMMETRY = 1e-8
+_LARGE = 64
+"""Size over its bandwidth from which on a matrix is factored by its bands."""
+
 _SHOWN = 6
 
 
@@ -277,11 +280,34 @@ def _is_positive(mass: Matrix) -> bool:
     if not (diagonal > 0.0).all():
         return False
     scale = 1.0 / np.sqrt(diagonal)
+    bands = _bands(mass)
     try:
-        pivots = np.diag(np.linalg.cholesky(mass * scale * scale[:, None])) ** 2
+        if bands is None:
+            pivots = np.diag(np.linalg.cholesky(mass * scale * scale[:, None])) ** 2
+        else:
+            from scipy.linalg import cholesky_banded
+
+            for offset, band in enumerate(bands):
+                band[: len(mass) - offset] *= scale[offset:] * scale[: len(mass) - offset]
+            pivots = cholesky_banded(bands, lower=True, check_finite=False)[0] ** 2
     except np.linalg.LinAlgError:
         return False
     return bool(pivots.min() > 16.0 * len(mass) * np.finfo(np.float64).eps)
+
+
+def _bands(matrix: Matrix) -> Matrix | None:
+    """Return the diagonal and those below it, one per row, if few others hold numbers."""
+    size = len(matrix)
+    if size < _LARGE:
+        return None
+    rows, columns = np.nonzero(matrix)
+    width = int((rows - columns).max(initial=0))
+    if width * _LARGE > size:
+        return None
+    bands = np.zeros((width + 1, size))
+    for offset, band in enumerate(bands):
+        band[: size - offset] = np.diagonal(matrix, -offset)
+    return bands
 
 
 def _damping(
