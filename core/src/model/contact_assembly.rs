@@ -39,7 +39,12 @@ impl ContactAssembly {
                 if (0..size).any(|i| (0..dofs).any(|j| !part[(i, j)].is_finite())) {
                     return Err(Error::value(entry, f64::NAN, "its rows must be finite"));
                 }
-                rows.get_mut(first..first + size, ..).copy_from(part);
+                // They hold few numbers.
+                for j in 0..dofs {
+                    for i in (0..size).filter(|&i| part[(i, j)] != 0.0) {
+                        rows[(first + i, j)] = part[(i, j)];
+                    }
+                }
             }
             let own = law.stiffness();
             stiffness.get_mut(first..first + size, first..first + size).copy_from(&own);

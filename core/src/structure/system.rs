@@ -1,5 +1,6 @@
 //! Mass, damping and stiffness.
 
+use super::contact_shapes::SparseRows;
 use super::massless::{substitute, trace, without_mass, StuckModes};
 use super::sparse_matrices::is_positive;
 use crate::Error;
@@ -7,6 +8,8 @@ use faer::{Mat, MatRef};
 
 /// Asymmetry, relative to the largest entry, that printed digits may leave in a matrix.
 const ASYMMETRY: f64 = 1e-8;
+/// Rows and columns of a tile.
+const TILE: usize = 32;
 /// Contacts from which on the numbers in their rows are counted.
 const MANY: usize = 24;
 
@@ -172,11 +175,7 @@ impl Structure {
             return &self.stiffness + rows.transpose() * contact_stiffness * rows;
         }
         // Rows of many contacts hold few numbers each, and a contact knows few others.
-        let entries = |i: usize| {
-            let row = rows.row(i).iter().copied().enumerate();
-            row.filter(|(_, b)| *b != 0.0).collect::<Vec<_>>()
-        };
-        let entries: Vec<_> = (0..rows.nrows()).map(entries).collect();
+        let SparseRows { entries, .. } = SparseRows::of(rows);
         let mut restrained = self.stiffness.clone();
         for (j, column) in contact_stiffness.col_iter().enumerate() {
             for (i, d) in column.iter().enumerate().filter(|(_, d)| **d != 0.0) {
@@ -189,26 +188,31 @@ impl Structure {
     }
 }
 
+/// Averages out rounded digits, a tile at a time: far columns lie apart in memory.
 fn symmetrise(entry: &str, matrix: &mut Mat<f64>) -> Result<(), Error> {
-    let size = matrix.nrows();
     let largest = matrix.norm_max();
-    for j in 0..size {
-        for i in 0..j {
-            let difference = (matrix[(i, j)] - matrix[(j, i)]).abs();
-            if difference > ASYMMETRY * largest {
-                return Err(Error::value(
-                    format!("{entry}[{i}, {j}] - {entry}[{j}, {i}]"),
-                    difference,
-                    "the matrix must be symmetric",
-                ));
-            }
+    for (i, j) in tiles(matrix.nrows()) {
+        let (one, other) = (matrix[(i, j)], matrix[(j, i)]);
+        if (one - other).abs() > ASYMMETRY * largest {
+            return Err(Error::value(
+                format!("{entry}[{i}, {j}] - {entry}[{j}, {i}]"),
+                (one - other).abs(),
+                "the matrix must be symmetric",
+            ));
         }
-    }
-    for j in 0..size {
-        for i in 0..j {
-            let mean = 0.5 * (matrix[(i, j)] + matrix[(j, i)]);
-            (matrix[(i, j)], matrix[(j, i)]) = (mean, mean);
-        }
+        let mean = 0.5 * (one + other);
+        (matrix[(i, j)], matrix[(j, i)]) = (mean, mean);
     }
     Ok(())
+}
+
+/// Places above the diagonal, tile by tile.
+fn tiles(size: usize) -> impl Iterator<Item = (usize, usize)> {
+    let starts = move || (0..size).step_by(TILE);
+    let pairs =
+        starts().flat_map(move |j| starts().take_while(move |i| *i <= j).map(move |i| (i, j)));
+    pairs.flat_map(move |(first, column)| {
+        let columns = column..size.min(column + TILE);
+        columns.flat_map(move |j| (first..j.min(first + TILE)).map(move |i| (i, j)))
+    })
 }

@@ -11,8 +11,9 @@ from stickslip import _core
 from stickslip.analyses.texts import TEXTS, told
 from stickslip.checks import listed
 from stickslip.model import Coulomb, Model, StructuralDamper, natural_frequencies
+from stickslip.model.pivots import scaled_pivots
 from stickslip.model.state import State
-from stickslip.results.arrays import STABILITY, UNIQUE, Arrays, Float, amplitude_of
+from stickslip.results.arrays import STABILITY, UNIQUE, Arrays, amplitude_of
 from stickslip.results.damper_curve import DamperArrays
 from stickslip.results.diagnostic import Diagnostic, missed_tolerances, present
 from stickslip.results.status import Status
@@ -282,15 +283,10 @@ def uniqueness(model: Model) -> Diagnostic | None:
         return told("law-not-monotone", _laws=listed(open_laws))
     damping = model.structure.damping
     # Gyroscopic terms are skew and do no work: only the symmetric part takes energy out.
-    symmetric = 0.5 * (damping + damping.T)
-    diagonal = np.abs(np.diag(symmetric))
-    scale = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
-    scaled = symmetric * scale * scale[:, None]
     # Rounding may put the zero eigenvalue of an undamped motion on either side.
-    identity = np.eye(len(scaled))
-    if _is_positive(scaled - 1e-13 * identity):
+    if scaled_pivots(damping, -1e-13) is not None:
         return None
-    if _is_positive(scaled + 1e-9 * identity):
+    if scaled_pivots(damping, 1e-9) is not None:
         return told("undamped-motion")
     return told("negative-damping")
 
@@ -302,14 +298,6 @@ def arrays_of(solution: _core.Solution, model: Model) -> Arrays:
         return arrays
     states = np.where(arrays.solved, STABILITY.index("stable"), STABILITY.index("not decided"))
     return replace(arrays, stability=states.astype(np.uint8))
-
-
-def _is_positive(matrix: Float) -> bool:
-    try:
-        np.linalg.cholesky(matrix)
-    except np.linalg.LinAlgError:
-        return False
-    return True
 
 
 def turn_per_step(model: Model, settings: TransientSettings) -> float:

@@ -25,14 +25,12 @@ from stickslip.model.coupling import Coupling
 from stickslip.model.damping import DampingLaw, ModalDamping, Rayleigh
 from stickslip.model.dofs import Dofs
 from stickslip.model.matrix_units import MatrixUnits, Units
+from stickslip.model.pivots import scaled_pivots
 
 __all__ = ["DampingLaw", "ModalDamping", "Rayleigh", "Structure", "join"]
 
 # Printed matrices carry rounded digits; anything larger than this is a wrong matrix.
 _ASYMMETRY = 1e-8
-_LARGE = 64
-"""Size over its bandwidth from which on a matrix is factored by its bands."""
-
 _SHOWN = 6
 
 
@@ -236,7 +234,8 @@ def _symmetric(matrix: Matrix, entry: str, names: tuple[str, ...]) -> Matrix:
     require_square(matrix, entry, len(names))
     require_finite(matrix, entry, names)
     with np.errstate(over="ignore"):
-        difference = np.abs(matrix - matrix.T)
+        difference = matrix - matrix.T
+    np.abs(difference, out=difference)
     if difference.max() > _ASYMMETRY * np.abs(matrix).max():
         row, column = np.unravel_index(difference.argmax(), difference.shape)
         triangular = not (np.tril(matrix, -1).any() and np.triu(matrix, 1).any())
@@ -250,7 +249,8 @@ def _symmetric(matrix: Matrix, entry: str, names: tuple[str, ...]) -> Matrix:
             f"{entry}: {matrix[row, column]:.9g} at ({one}, {other}) but "
             f"{matrix[column, row]:.9g} at ({other}, {one}); {remedy}"
         )
-    return 0.5 * matrix + 0.5 * matrix.T
+    mean = np.multiply(matrix, 0.5, out=difference)
+    return mean + mean.T
 
 
 def _require_undamped(damping: Matrix, massless: NDArray[np.bool_], names: tuple[str, ...]) -> None:
@@ -276,38 +276,10 @@ def _require_positive(mass: Matrix, inert: NDArray[np.bool_], names: tuple[str, 
 def _is_positive(mass: Matrix) -> bool:
     # Scaled to a unit diagonal, so that rotations in kg m^2 beside masses in kg, or any other
     # choice of units, do not look singular.
-    diagonal = np.diag(mass)
-    if not (diagonal > 0.0).all():
+    if not (np.diag(mass) > 0.0).all():
         return False
-    scale = 1.0 / np.sqrt(diagonal)
-    bands = _bands(mass)
-    try:
-        if bands is None:
-            pivots = np.diag(np.linalg.cholesky(mass * scale * scale[:, None])) ** 2
-        else:
-            from scipy.linalg import cholesky_banded
-
-            for offset, band in enumerate(bands):
-                band[: len(mass) - offset] *= scale[offset:] * scale[: len(mass) - offset]
-            pivots = cholesky_banded(bands, lower=True, check_finite=False)[0] ** 2
-    except np.linalg.LinAlgError:
-        return False
-    return bool(pivots.min() > 16.0 * len(mass) * np.finfo(np.float64).eps)
-
-
-def _bands(matrix: Matrix) -> Matrix | None:
-    """Return the diagonal and those below it, one per row, if few others hold numbers."""
-    size = len(matrix)
-    if size < _LARGE:
-        return None
-    rows, columns = np.nonzero(matrix)
-    width = int((rows - columns).max(initial=0))
-    if width * _LARGE > size:
-        return None
-    bands = np.zeros((width + 1, size))
-    for offset, band in enumerate(bands):
-        band[: size - offset] = np.diagonal(matrix, -offset)
-    return bands
+    pivots = scaled_pivots(mass)
+    return pivots is not None and bool(pivots.min() > 16.0 * len(mass) * np.finfo(np.float64).eps)
 
 
 def _damping(

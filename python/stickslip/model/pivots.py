@@ -1,0 +1,52 @@
+"""Whether matrices are positive definite, by their bands where they hold few numbers."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from stickslip.checks import Matrix
+
+__all__ = ["scaled_pivots"]
+
+_LARGE = 64
+"""Size over its bandwidth from which on a matrix is factored by its bands."""
+
+
+def scaled_pivots(matrix: Matrix, shift: float = 0.0) -> Matrix | None:
+    """Return the pivots of the symmetric part of a matrix, scaled to a diagonal of 1, shape (N,).
+
+    None if it is not positive definite. `shift` is added to the scaled diagonal.
+    """
+    diagonal = np.abs(np.diag(matrix))
+    scale = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
+    bands = _bands(matrix)
+    try:
+        if bands is None:
+            scaled = (0.5 * (matrix + matrix.T)) * scale * scale[:, None]
+            np.fill_diagonal(scaled, np.diag(scaled) + shift)
+            return np.asarray(np.diag(np.linalg.cholesky(scaled)) ** 2)
+        from scipy.linalg import cholesky_banded
+
+        for offset, band in enumerate(bands):
+            within = len(scale) - offset
+            band[:within] *= scale[offset:] * scale[:within]
+        bands[0] += shift
+        return np.asarray(cholesky_banded(bands, lower=True, check_finite=False)[0] ** 2)
+    except np.linalg.LinAlgError:
+        return None
+
+
+def _bands(matrix: Matrix) -> Matrix | None:
+    """Return the diagonal and the bands below it, one per row, if few others hold numbers."""
+    size = len(matrix)
+    if size < _LARGE:
+        return None
+    rows, columns = np.nonzero(matrix)
+    width = int(np.abs(rows - columns).max(initial=0))
+    if width * _LARGE > size:
+        return None
+    bands = np.zeros((width + 1, size))
+    for offset, band in enumerate(bands):
+        both = np.diagonal(matrix, -offset) + np.diagonal(matrix, offset)
+        band[: size - offset] = 0.5 * both
+    return bands
