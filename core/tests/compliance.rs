@@ -90,6 +90,125 @@ fn every_modal_base_reproduces_the_direct_solution() {
     }
 }
 
+/// A chain with a contact at every mass, held at one end.
+fn chain(count: usize, damping: &str) -> (Structure, Ports) {
+    let between = |i: usize| 900.0 + 300.0 * (i as f64).sin();
+    let stiffness = Mat::from_fn(count, count, |i, j| match i.abs_diff(j) {
+        0 => between(i) + between(i + 1),
+        1 => -between(i.max(j)),
+        _ => 0.0,
+    });
+    let mass = Mat::from_fn(count, count, |i, j| match i.abs_diff(j) {
+        0 => 1.0 + 0.3 * (3.0 * i as f64).cos(),
+        1 => 0.1,
+        _ => 0.0,
+    });
+    let damping = match damping {
+        "mass" => faer::Scale(0.6) * &mass,
+        "local" => Mat::from_fn(count, count, |i, j| if i == j && i < 9 { 2.0 } else { 0.0 }),
+        _ => faer::Scale(0.4) * &mass + faer::Scale(2e-3) * &stiffness,
+    };
+    let structure = Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref()).unwrap();
+    let rows = Mat::from_fn(count - 1, count, |i, j| match (i % 3, j.wrapping_sub(i)) {
+        (_, 0) => 1.0,
+        (0, 1) => -1.0,
+        _ => 0.0,
+    });
+    let stiffness = Mat::from_fn(count - 1, count - 1, |i, j| match i.abs_diff(j) {
+        0 => 70.0 + i as f64,
+        1 if i.min(j) % 2 == 0 => 5.0,
+        _ => 0.0,
+    });
+    let amplitude = (0..count).map(|i| c64::new((i as f64).sin(), 0.5)).collect();
+    let loads = vec![
+        HarmonicLoad { harmonic: 1, amplitude },
+        HarmonicLoad { harmonic: 0, amplitude: vec![c64::new(3.0, 0.0); count] },
+    ];
+    (structure, Ports { rows, stiffness, loads })
+}
+
+#[test]
+fn sparse_factors_reproduce_the_direct_solution() {
+    for damping in ["mass", "local", "rayleigh"] {
+        let (structure, ports) = chain(200, damping);
+        let (sparse, base) = compliance(&structure, &ports).unwrap();
+        assert_eq!(base, "sparse factors");
+        let direct = DirectCompliance::new(&structure, &ports).unwrap();
+        let contacts = ports.rows.nrows();
+        let slip: Vec<c64> = (0..contacts).map(|i| c64::new(2.0, -(i as f64).cos())).collect();
+        let observe = [0, 3, 150, 199];
+        for (harmonic, omega) in [(0, 5.0), (1, 7.0), (3, 11.0), (9, 14.0)] {
+            let of = |form: &dyn Compliance| {
+                let mut own = Receptance { slope: Some(Default::default()), ..Default::default() };
+                form.receptance(harmonic, omega, &mut own).unwrap();
+                own
+            };
+            let (a, b) = (of(sparse.as_ref()), of(&direct));
+            compare(base, &a.contact, &b.contact);
+            compare(base, &a.stuck, &b.stuck);
+            if let (Some(a), Some(b)) = (&a.slope, &b.slope) {
+                compare(base, &a.0, &b.0);
+                compare(base, &a.1, &b.1);
+            }
+            for quantity in [Quantity::Whole, Quantity::OfSlip, Quantity::Slope] {
+                let (contact, slip_load, observe) = (&[][..], &slip[..], &observe[..]);
+                let request = Request { harmonic, omega, quantity, contact, slip_load, observe };
+                let mut x = vec![c64::new(0.0, 0.0); observe.len()];
+                let mut y = x.clone();
+                sparse.displacement(&request, &mut x).unwrap();
+                direct.displacement(&request, &mut y).unwrap();
+                // A mean has no phase.
+                if harmonic == 0 {
+                    x.iter_mut().chain(&mut y).for_each(|z| z.im = 0.0);
+                }
+                compare(base, &x, &y);
+            }
+        }
+        let close = |a: &[f64], b: &[f64]| {
+            assert_eq!(a.len(), b.len());
+            a.iter().zip(b).for_each(|(a, b)| assert!((a - b).abs() <= 1e-9 * b, "{a} {b}"));
+        };
+        for (stuck, all) in [(true, direct.stuck_frequencies()), (false, direct.free_frequencies())]
+        {
+            let own: Vec<f64> = all.iter().copied().filter(|w| (30.0..=40.0).contains(w)).collect();
+            assert!(own.len() > 5);
+            close(&sparse.frequencies_between(stuck, [30.0, 40.0]), &own);
+        }
+        close(sparse.stuck_frequencies(), direct.stuck_frequencies());
+        close(sparse.free_frequencies(), direct.free_frequencies());
+        let highest = direct.highest_frequency();
+        assert!((0.5..2.0).contains(&(sparse.highest_frequency() / highest)));
+        let lowest = sparse.lowest_frequencies().unwrap();
+        // About: they tell a body that only contacts hold.
+        assert!((lowest[0] / direct.stuck_frequencies()[0] - 1.0).abs() < 1e-4);
+        assert!((lowest[1] / direct.free_frequencies()[0] - 1.0).abs() < 1e-4);
+    }
+}
+
+#[test]
+fn chains_without_damping_or_support_are_seen_by_their_modes() {
+    let (structure, ports) = chain(200, "mass");
+    let none = Mat::zeros(200, 200);
+    let undamped = Structure::new(structure.mass(), none.as_ref(), structure.stiffness()).unwrap();
+    assert_eq!(compliance(&undamped, &ports).unwrap().1, "stuck modes");
+    let loose = Mat::from_fn(200, 200, |i, j| match i.abs_diff(j) {
+        0 if i == 0 || i == 199 => 900.0,
+        0 => 1800.0,
+        1 => -900.0,
+        _ => 0.0,
+    });
+    let damping = structure.damping();
+    let loose = Structure::new(structure.mass(), damping, loose.as_ref()).unwrap();
+    // Every contact lies between two masses.
+    let rows = Mat::from_fn(199, 200, |i, j| match j.wrapping_sub(i) {
+        0 => 1.0,
+        1 => -1.0,
+        _ => 0.0,
+    });
+    let ports = Ports { rows, ..ports };
+    assert_eq!(compliance(&loose, &ports).unwrap().1, "stuck modes");
+}
+
 fn compare(name: &str, got: &[c64], want: &[c64]) {
     let scale = want.iter().map(|z| z.norm()).fold(0.0, f64::max);
     for (a, b) in got.iter().zip(want) {

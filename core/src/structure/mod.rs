@@ -188,8 +188,8 @@ pub trait Compliance: Send + Sync {
         all.iter().copied().filter(|w| (low..=high).contains(w)).collect()
     }
 
-    /// Lowest natural frequency of the stuck structure and of that without contacts, where they are known
-    /// [rad/s].
+    /// Lowest natural frequency of the stuck structure and of that without contacts, or about it, where
+    /// they are known [rad/s].
     fn lowest_frequencies(&self) -> Option<[f64; 2]> {
         Some([*self.stuck_frequencies().first()?, *self.free_frequencies().first()?])
     }

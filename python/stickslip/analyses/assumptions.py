@@ -11,7 +11,6 @@ from stickslip import _core
 from stickslip.analyses.texts import TEXTS, told
 from stickslip.checks import listed
 from stickslip.model import Coulomb, Model, StructuralDamper, natural_frequencies
-from stickslip.model.pivots import scaled_pivots
 from stickslip.model.state import State
 from stickslip.results.arrays import STABILITY, UNIQUE, Arrays, amplitude_of
 from stickslip.results.damper_curve import DamperArrays
@@ -281,14 +280,10 @@ def uniqueness(model: Model) -> Diagnostic | None:
     open_laws = list(dict.fromkeys(model.problem.laws_not_monotone))
     if open_laws:
         return told("law-not-monotone", _laws=listed(open_laws))
-    damping = model.structure.damping
-    # Gyroscopic terms are skew and do no work: only the symmetric part takes energy out.
-    # Rounding may put the zero eigenvalue of an undamped motion on either side.
-    if scaled_pivots(damping, -1e-13) is not None:
-        return None
-    if scaled_pivots(damping, 1e-9) is not None:
+    damped = model.structure.is_damped
+    if damped is None:
         return told("undamped-motion")
-    return told("negative-damping")
+    return None if damped else told("negative-damping")
 
 
 def arrays_of(solution: _core.Solution, model: Model) -> Arrays:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from numbers import Real
 
 import numpy as np
@@ -117,6 +118,18 @@ class Structure(Dofs):
         # Unpickled arrays would be writeable; going through the constructor makes them constant.
         matrices = self.mass, self.stiffness, self.damping
         return Structure.of_law, (*matrices, self.dofs, self.damping_law, self.proportional)
+
+    @cached_property
+    def is_damped(self) -> bool | None:
+        """Whether the damping takes energy out of every motion; None if it does so of some alone.
+
+        False if it feeds energy into one.
+        """
+        # Gyroscopic terms are skew and do no work: only the symmetric part takes energy out.
+        # Rounding may put the zero eigenvalue of an undamped motion on either side.
+        if scaled_pivots(self.damping, -1e-13) is not None:
+            return True
+        return None if scaled_pivots(self.damping, 1e-9) is not None else False
 
     @classmethod
     def of_law(
