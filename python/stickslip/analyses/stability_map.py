@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 from numpy.typing import ArrayLike
 
 from stickslip.analyses.arguments import require_time
 from stickslip.analyses.limit_cycles import NegativeDamping
-from stickslip.analyses.run import Progress, Run, share
+from stickslip.analyses.run import Progress, Run
+from stickslip.analyses.side_by_side import in_turn
 from stickslip.analyses.texts import told
 from stickslip.analyses.variation import variation_of
 from stickslip.errors import ModelError
@@ -63,24 +66,30 @@ def stability_map(
     rows: list[tuple[float, float, float]] = []
     notes: list[Diagnostic] = []
     interrupted = False
+
+    def limit_of(value: float, progress: Progress) -> tuple[float, float, float] | str | None:
+        """Return ratio, frequency and stable ratio, why there are none, or None if interrupted."""
+        try:
+            solution = negative.cycles(variation.apply(model, value), cycles, progress)
+        except ModelError as error:
+            return str(error)
+        if solution.interrupted:
+            return None
+        arrays = CycleArrays.of(solution, negative_damping=negative.matrix)
+        return (*arrays.turn, _stable_limit(arrays))
+
     with Run("stability map", progress) as run:
         try:
             with run.at_once():
-                for place, value in enumerate(values):
-                    part = share(run, place / total, (place + 1) / total)
-                    try:
-                        solution = negative.cycles(variation.apply(model, value), cycles, part)
-                    except ModelError as error:
-                        rows.append((np.nan, np.nan, np.nan))
-                        notes.append(_without_limit(name, value, str(error)))
-                        continue
-                    if solution.interrupted:
+                parts = [partial(limit_of, value) for value in values]
+                for value, found in zip(values, in_turn(parts, run), strict=True):
+                    if found is None:
                         interrupted = True
                         break
-                    arrays = CycleArrays.of(solution, negative_damping=negative.matrix)
-                    ratio, omega = arrays.turn
-                    rows.append((ratio, omega, _stable_limit(arrays)))
-                    if np.isnan(ratio):
+                    rows.append(found if isinstance(found, tuple) else (np.nan, np.nan, np.nan))
+                    if isinstance(found, str):
+                        notes.append(_without_limit(name, value, found))
+                    elif np.isnan(found[0]):
                         notes.append(_without_limit(name, value, "the branch does not turn"))
         except KeyboardInterrupt:
             interrupted = True

@@ -10,7 +10,8 @@ from typing import TypeAlias
 import numpy as np
 
 from stickslip.analyses.campbell import model_at, require_models
-from stickslip.analyses.run import Progress, share
+from stickslip.analyses.run import Progress
+from stickslip.analyses.side_by_side import in_turn
 from stickslip.analyses.variation import variation_of
 from stickslip.checks import brief
 from stickslip.disk import BladedDisk, MistunedDisk
@@ -64,7 +65,8 @@ def sweep(
             raise ModelError(f"analysis: it returned {brief(result)}, no result; return one")
         return result
 
-    return swept(models, settings, compute, progress)
+    # What a caller gives need not bear several threads.
+    return swept(models, settings, compute, progress, alone=True)
 
 
 def swept(
@@ -72,26 +74,29 @@ def swept(
     keys: SweepKeys,
     compute: Compute,
     progress: Progress,
+    *,
+    alone: bool,
 ) -> Sweep:
-    """Return the results along the parameter of some keys."""
+    """Return the results along the parameter of some keys, `alone` one after the other."""
     kept, at = _family(models, keys)
     results: list[Result] = []
-    count = len(kept.values)
-    for number, value in enumerate(kept.values):
-        part = share(progress, number / count, (number + 1) / count)
+
+    def result_at(value: float, part: Progress) -> Result:
         try:
-            results.append(compute(at(value), part))
+            return compute(at(value), part)
         except ModelError as error:
             where = f"{kept.parameter} = {value:.6g}"
             raise ModelError(f"{where}: {error}", study=f"{where}: {error.study}") from None
-        except Interrupted as stop:
-            if not results:
-                raise
-            done = Sweep.of(kept, tuple(results), results[0].model, interrupted=True)
-            message = f"sweep interrupted: {len(results)} of {count} values are complete"
-            raise Interrupted(message, done) from stop
-        if progress is not None:
-            progress((number + 1) / count)
+
+    parts = [partial(result_at, value) for value in kept.values]
+    try:
+        results.extend(in_turn(parts, progress, alone=alone))
+    except (Interrupted, KeyboardInterrupt) as stop:
+        if not results:
+            raise
+        done = Sweep.of(kept, tuple(results), results[0].model, interrupted=True)
+        message = f"sweep interrupted: {len(results)} of {len(parts)} values are complete"
+        raise Interrupted(message, done) from stop
     base = models if isinstance(models, Model) else results[0].model
     return Sweep.of(kept, tuple(results), base)
 

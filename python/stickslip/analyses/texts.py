@@ -65,8 +65,8 @@ TEXTS = {
     "is the sum over its real modes.",
     "modal-base/coupled stuck modes": "The damping couples the modes of the stuck structure: the "
     "compliance is the sum over its real modes, their coupling added by iteration.",
-    "modal-base/sparse factors": "The matrices hold few numbers: points cost a sparse factorisation "
-    "per harmonic, and no mode is computed.",
+    "modal-base/sparse factors": "The matrices hold few numbers: points cost a sparse "
+    "factorisation per harmonic, and no mode is computed.",
     "modal-base/free modes": "The damping is proportional on the free structure: the compliance is "
     "the sum over its real modes, the stuck contacts added exactly.",
     "modal-base/complex modes": "The damping matrix couples the modes, or rounding leaves open "

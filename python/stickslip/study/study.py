@@ -7,11 +7,13 @@ import re
 import tomllib
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from pydantic import ValidationError
 
-from stickslip.analyses.run import Progress, share
+from stickslip.analyses.run import Progress
+from stickslip.analyses.side_by_side import in_turn
 from stickslip.analyses.sweep import swept
 from stickslip.checks import brief, file_path, is_file, is_reserved, vanished
 from stickslip.errors import ModelError
@@ -183,13 +185,19 @@ class Study:
         Interrupted
             Ctrl-C; carries the part of the current curve that was done.
         """
-        cases = self.cases
         shown = self.tables.output.dofs or ()
-        for number, case in enumerate(cases):
-            part = share(progress, number / len(cases), (number + 1) / len(cases))
+
+        def result_of(case: Case, part: Progress) -> Result:
             with named(self.source):
-                result = self._result(case, part, shown)
-            yield result
+                return self._result(case, part, shown)
+
+        parts = [partial(result_of, case) for case in self.cases]
+        yield from in_turn(parts, progress, alone=self._has_threads)
+
+    @property
+    def _has_threads(self) -> bool:
+        """Whether the analysis has threads of its own."""
+        return "threads" in type(self.tables.analysis).model_fields
 
     def _result(self, case: Case, progress: Progress, shown: Sequence[str]) -> Result:
         """Compute a case: one result, or the sweep that the study asks for."""
@@ -203,7 +211,11 @@ class Study:
             turns = analysis.of_speed and depends_on_speed(self.tables)
             return analysis.run(at_speed if turns else case.model, progress, shown)  # type: ignore[arg-type]
         models = at_speed if keys.speed is not None else case.model
-        return swept(models, keys, lambda model, part: analysis.run(model, part, shown), progress)
+
+        def compute(model: Model, part: Progress) -> Result:
+            return analysis.run(model, part, shown)
+
+        return swept(models, keys, compute, progress, alone=self._has_threads)
 
 
 def json_schema() -> dict[str, object]:

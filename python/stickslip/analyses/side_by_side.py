@@ -1,0 +1,102 @@
+"""Independent parts of a work at the same time, in as many threads as there are processors.
+
+What a part gives depends on nothing but itself: it is the same with any number of threads, and
+comes in the order of the parts.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor, wait
+from itertools import islice
+from os import cpu_count
+from threading import Event, local
+from typing import TypeVar
+
+from stickslip.analyses.run import Progress, share
+
+__all__ = ["in_turn"]
+
+_Kind = TypeVar("_Kind")
+
+_LOOK = 0.05
+"""Seconds between two looks at signals and progress."""
+
+_WITHIN = local()
+"""Knows whether this thread works on a part: its own parts come one after the other."""
+
+
+def in_turn(
+    parts: Sequence[Callable[[Progress], _Kind]], progress: Progress, *, alone: bool = False
+) -> Iterator[_Kind]:
+    """Yield what parts of a work give, in their order.
+
+    Parameters
+    ----------
+    parts : sequence of callable
+        Each gets the progress that it has to tell; Ctrl-C, and what `progress` raises to end the
+        work, reach it as `KeyboardInterrupt` of that.
+    progress : callable or None
+        Called in this thread, with the share of the work done.
+    alone : bool, optional
+        One part after the other, in this thread.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        Behind the last part that was complete; or what the part raises that was not.
+    """
+    count = len(parts)
+    threads = min(cpu_count() or 1, count)
+    if alone or threads <= 1 or getattr(_WITHIN, "part", False):
+        for number, part in enumerate(parts):
+            yield part(share(progress, number / count, (number + 1) / count))
+            if progress is not None:
+                progress((number + 1) / count)
+        return
+    told, ended = [0.0] * count, Event()
+    waiting: deque[Future[_Kind]] = deque()
+    pool = ThreadPoolExecutor(threads, "stickslip")
+    rest = iter(range(count))
+
+    def computed(number: int) -> _Kind:
+        def heard(done: float) -> None:
+            told[number] = done
+            if ended.is_set():
+                raise KeyboardInterrupt
+
+        _WITHIN.part = True
+        given = parts[number](heard)
+        told[number] = 1.0
+        return given
+
+    try:
+        for _ in range(count):
+            # No more than can be worked on: what is complete waits in memory for those before it.
+            for number in islice(rest, threads - len(waiting)):
+                waiting.append(pool.submit(computed, number))
+            stop = _awaited(waiting[0], told, progress)
+            if stop is not None:
+                ended.set()
+            yield waiting.popleft().result()
+            if stop is not None:
+                raise stop
+    finally:
+        ended.set()
+        pool.shutdown(cancel_futures=True)
+
+
+def _awaited(
+    part: Future[_Kind], told: Sequence[float], progress: Progress
+) -> KeyboardInterrupt | None:
+    """Wait for a part, or until the caller ends the work."""
+    try:
+        while True:
+            done = wait([part], timeout=_LOOK).done
+            if progress is not None:
+                progress(sum(told) / len(told))
+            if done:
+                return None
+    except KeyboardInterrupt as stop:
+        return stop

@@ -1,0 +1,150 @@
+"""Parts of a work at the same time: their order, their numbers, their end."""
+
+import os
+import signal
+import threading
+import time
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+from stickslip.analyses import side_by_side
+from stickslip.analyses.run import Progress
+from stickslip.analyses.side_by_side import in_turn
+from stickslip.study import Study
+
+STUDY = """
+name = "study"
+[structure]
+mass = [[1.0, 0.0], [0.0, 1.0]]
+stiffness = [[5e4, -2e4], [-2e4, 2e4]]
+damping = { modal = 0.003 }
+dofs = ["a", "b"]
+[[contact]]
+law = "jenkins"
+dof = "b"
+stiffness = 1e4
+slip_force = 2.0
+[[force]]
+dof = "a"
+amplitude = 1.0
+
+"""
+LEVELS = """
+[analysis]
+kind = "forced-response"
+omega = SPAN
+harmonics = 9
+levels = [0.5, 1, 2, 4, 8]
+"""
+SWEEP = """
+[analysis]
+kind = "forced-response"
+omega = [80, 90, 100]
+harmonics = 9
+[sweep]
+slip_force = [0.5, 1.0, 2.0, 4.0]
+"""
+
+
+def read(rest: str) -> Study:
+    return Study.parse(STUDY + rest, folder=Path())
+
+
+def threads(monkeypatch: pytest.MonkeyPatch, count: int) -> None:
+    monkeypatch.setattr(side_by_side, "cpu_count", lambda: count)
+
+
+def flutter() -> tuple[ss.Model, np.ndarray]:
+    structure = ss.Structure(
+        np.eye(2), [[5e4, -2e4], [-2e4, 2e4]], ss.ModalDamping(0.003), ["a", "b"]
+    )
+    model = ss.Model(structure, [ss.Jenkins("b", stiffness=1e4, slip_force=2.0)])
+    return model, -0.5 * np.eye(2)
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_parts_come_in_their_order_from_as_many_threads(
+    monkeypatch: pytest.MonkeyPatch, count: int
+) -> None:
+    threads(monkeypatch, count)
+    seen, told = set(), []
+
+    def part(number: int, progress: Progress) -> int:
+        seen.add(threading.get_ident())
+        time.sleep(0.02 * (7 - number))
+        assert progress is not None
+        progress(1.0)
+        return number
+
+    assert list(in_turn([partial(part, number) for number in range(7)], told.append)) == [*range(7)]
+    assert len(seen) == count
+    assert told == sorted(told)
+    assert told[-1] == 1.0
+
+
+def test_what_a_part_raises_comes_in_its_place(monkeypatch: pytest.MonkeyPatch) -> None:
+    threads(monkeypatch, 2)
+
+    def part(number: int, _: Progress) -> int:
+        if number == 2:
+            raise ss.ModelError("no")
+        return number
+
+    found = in_turn([partial(part, number) for number in range(5)], None)
+    assert [next(found), next(found)] == [0, 1]
+    with pytest.raises(ss.ModelError, match="no"):
+        next(found)
+
+
+def test_numbers_are_the_same_with_any_number_of_threads(monkeypatch: pytest.MonkeyPatch) -> None:
+    model, negative = flutter()
+    found = []
+    for count in (1, 2, 3):
+        threads(monkeypatch, count)
+        curves = list(read(LEVELS.replace("SPAN", "[80, 85, 90, 95, 100, 240]")).run())
+        chart = ss.stability_map(model, negative, stiffness=[5e3, 1e4, 2e4, 4e4, 8e4])
+        (sweep,) = read(SWEEP).run()
+        found.append(
+            (
+                *(curve.coefficients("a") for curve in curves),
+                *(one.coefficients("b") for one in sweep.results),
+                chart.limit,
+                chart.omega,
+                chart.stable_limit,
+            )
+        )
+    for other in found[1:]:
+        for one, two in zip(found[0], other, strict=True):
+            np.testing.assert_array_equal(one, two)
+
+
+@pytest.mark.parametrize("count", [1, 3])
+def test_ctrl_c_keeps_the_levels_that_are_complete(
+    monkeypatch: pytest.MonkeyPatch, count: int
+) -> None:
+    threads(monkeypatch, count)
+    study = read(LEVELS.replace("SPAN", "{ from = 50, to = 300, points = 60000 }"))
+    whole = []
+    start = 0.0
+
+    def stop() -> None:
+        nonlocal start
+        start = time.monotonic()
+        os.kill(os.getpid(), signal.SIGINT)
+
+    found = study.run()
+    whole.append(next(found))
+    timer = threading.Timer(0.2, stop)
+    timer.start()
+    with pytest.raises((ss.Interrupted, KeyboardInterrupt)) as caught:
+        whole.extend(found)
+    # One second asked; the machine may be busy.
+    assert time.monotonic() - start < 5.0
+    assert all(curve.status[-1].solved for curve in whole)
+    if isinstance(caught.value, ss.Interrupted):
+        assert caught.value.result.interrupted
+        assert caught.value.result.omega.size < 60000
