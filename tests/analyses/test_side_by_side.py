@@ -102,11 +102,19 @@ def test_what_a_part_raises_comes_in_its_place(monkeypatch: pytest.MonkeyPatch) 
 
 def test_numbers_are_the_same_with_any_number_of_threads(monkeypatch: pytest.MonkeyPatch) -> None:
     model, negative = flutter()
+    disk = ss.BladedDisk(
+        model.structure,
+        sectors=5,
+        couplings=[ss.Coupling("a", stiffness=1e3)],
+        contacts=model.contacts,
+        engine_order=0,
+    )
     found = []
     for count in (1, 2, 3):
         threads(monkeypatch, count)
         curves = list(read(LEVELS.replace("SPAN", "[80, 85, 90, 95, 100, 240]")).run())
         chart = ss.stability_map(model, negative, stiffness=[5e3, 1e4, 2e4, 4e4, 8e4])
+        waves = ss.flutter_map(disk, ss.AerodynamicDamping(ratio=[-0.001] * 5), harmonics=5)
         (sweep,) = read(SWEEP).run()
         found.append(
             (
@@ -115,6 +123,10 @@ def test_numbers_are_the_same_with_any_number_of_threads(monkeypatch: pytest.Mon
                 chart.limit,
                 chart.omega,
                 chart.stable_limit,
+                waves.omega,
+                waves.disk_ratio,
+                np.array([one.amplitude for one in waves.cycles()]),
+                np.array([waves.counters["evaluations"]]),
             )
         )
     for other in found[1:]:

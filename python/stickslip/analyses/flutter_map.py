@@ -9,12 +9,14 @@ up to nothing, ``zeta(a) + zeta_aero(d, a) = 0``.
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.analyses.run import Progress, Run, share
+from stickslip.analyses.run import Progress, Run
+from stickslip.analyses.side_by_side import has_own_laws, in_turn
 from stickslip.analyses.texts import told
 from stickslip.analyses.wave_modes import WaveModes
 from stickslip.analyses.wave_stability import wave_cycles, wave_multiplier
@@ -96,14 +98,17 @@ def flutter_map(
     cycles: list[_Cycle] = []
     modes = WaveModes(disk, settings)
     interrupted = False
+
+    def followed(diameter: int, progress: Progress) -> tuple[_Wave, list[_Cycle]]:
+        wave = _Follower(waves, diameter, modes, progress)
+        row = wave.at(amplitudes)
+        return row, _compared(waves, settings, wave, wave.cycles(row))
+
     with Run("flutter map", progress) as run:
         try:
             with run.at_once():
-                for diameter in range(n):
-                    part = share(run, diameter / n, (diameter + 1) / n)
-                    wave = _Follower(waves, diameter, modes, part)
-                    row = wave.at(amplitudes)
-                    found = _compared(waves, settings, wave, wave.cycles(row))
+                parts = [partial(followed, diameter) for diameter in range(n)]
+                for row, found in in_turn(parts, run, alone=has_own_laws(disk)):
                     rows.append(row)
                     cycles.extend(found)
         except KeyboardInterrupt:
@@ -197,9 +202,7 @@ class _Follower:
 
     def at(self, amplitudes: NDArray[np.float64], harmonics: int | None = None) -> _Wave:
         """Return the wave at amplitudes; not-a-number where its mode was not reached."""
-        mode = self.modes.at(self.diameter, amplitudes, harmonics)
-        if self.progress is not None:
-            self.progress(1.0)
+        mode = self.modes.at(self.diameter, amplitudes, harmonics, self.progress)
         self.harmonics = int(mode.harmonics.max())
         return self._in_flow(mode)
 

@@ -15,8 +15,10 @@ from threading import Event, local
 from typing import TypeVar
 
 from stickslip.analyses.run import Progress, share
+from stickslip.model import Model
+from stickslip.model.contact_law import ContactLaw
 
-__all__ = ["in_turn"]
+__all__ = ["has_own_laws", "in_turn"]
 
 _Kind = TypeVar("_Kind")
 
@@ -85,6 +87,11 @@ def in_turn(
     finally:
         ended.set()
         pool.shutdown(cancel_futures=True)
+
+
+def has_own_laws(model: Model) -> bool:
+    """Return whether a contact law is the user's own, which need not bear several threads."""
+    return any(isinstance(contact, ContactLaw) for contact in model.contacts)
 
 
 def _awaited(

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from stickslip.analyses.arguments import require_time
 from stickslip.analyses.limit_cycles import NegativeDamping
 from stickslip.analyses.run import Progress, Run
-from stickslip.analyses.side_by_side import in_turn
+from stickslip.analyses.side_by_side import has_own_laws, in_turn
 from stickslip.analyses.texts import told
 from stickslip.analyses.variation import variation_of
 from stickslip.errors import ModelError
@@ -82,7 +82,8 @@ def stability_map(
         try:
             with run.at_once():
                 parts = [partial(limit_of, value) for value in values]
-                for value, found in zip(values, in_turn(parts, run), strict=True):
+                limits = in_turn(parts, run, alone=has_own_laws(model))
+                for value, found in zip(values, limits, strict=True):
                     if found is None:
                         interrupted = True
                         break

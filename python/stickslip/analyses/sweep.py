@@ -91,7 +91,7 @@ def swept(
     parts = [partial(result_at, value) for value in kept.values]
     try:
         results.extend(in_turn(parts, progress, alone=alone))
-    except (Interrupted, KeyboardInterrupt) as stop:
+    except KeyboardInterrupt as stop:
         if not results:
             raise
         done = Sweep.of(kept, tuple(results), results[0].model, interrupted=True)
