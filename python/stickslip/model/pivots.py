@@ -22,7 +22,10 @@ def scaled_pivots(matrix: Matrix, shift: float = 0.0) -> Matrix | None:
     bands = _bands(matrix)
     try:
         if bands is None:
-            scaled = (0.5 * (matrix + matrix.T)) * scale * scale[:, None]
+            scaled = 0.5 * matrix
+            scaled = scaled + scaled.T
+            scaled *= scale
+            scaled *= scale[:, None]
             np.fill_diagonal(scaled, np.diag(scaled) + shift)
             return np.asarray(np.diag(np.linalg.cholesky(scaled)) ** 2)
         from scipy.linalg import cholesky_banded

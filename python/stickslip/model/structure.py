@@ -243,7 +243,7 @@ def _names(dofs: Iterable[str] | None, size: int) -> tuple[str, ...]:
 
 
 def _symmetric(matrix: Matrix, entry: str, names: tuple[str, ...]) -> Matrix:
-    """Average out rounded digits; refuse what cannot be rounding."""
+    """Average out rounded digits, in place; refuse what cannot be rounding."""
     require_square(matrix, entry, len(names))
     require_finite(matrix, entry, names)
     with np.errstate(over="ignore"):
@@ -262,8 +262,11 @@ def _symmetric(matrix: Matrix, entry: str, names: tuple[str, ...]) -> Matrix:
             f"{entry}: {matrix[row, column]:.9g} at ({one}, {other}) but "
             f"{matrix[column, row]:.9g} at ({other}, {one}); {remedy}"
         )
-    mean = np.multiply(matrix, 0.5, out=difference)
-    return mean + mean.T
+    # Large matrices have no room for more of their size.
+    matrix *= 0.5
+    np.copyto(difference, matrix.T)
+    matrix += difference
+    return matrix
 
 
 def _require_undamped(damping: Matrix, massless: NDArray[np.bool_], names: tuple[str, ...]) -> None:
@@ -276,7 +279,7 @@ def _require_undamped(damping: Matrix, massless: NDArray[np.bool_], names: tuple
 
 
 def _require_positive(mass: Matrix, inert: NDArray[np.bool_], names: tuple[str, ...]) -> None:
-    if not inert.any() or _is_positive(mass[np.ix_(inert, inert)]):
+    if not inert.any() or _is_positive(mass if inert.all() else mass[np.ix_(inert, inert)]):
         return
     values, vectors = np.linalg.eigh(mass)
     name = names[int(np.abs(vectors[:, 0]).argmax())]
