@@ -94,7 +94,7 @@ pub(super) enum Inverse {
     /// Of every mode.
     Diagonal(Vec<c64>),
     /// As a factorisation.
-    Factors(Lu<usize, c64>),
+    Factors(Box<Lu<usize, c64>>),
 }
 
 impl Inverse {

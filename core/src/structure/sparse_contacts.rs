@@ -280,7 +280,7 @@ impl ContactCoordinates for SparseContacts {
         let order = |&(harmonic, slot): &(usize, usize)| {
             let factors = self.factors(harmonic, omega).map_err(|error| (harmonic, error))?;
             let rate = harmonic as f64 * omega;
-            Ok(Order { harmonic, slot, rate, inverse: Inverse::Factors(factors) })
+            Ok(Order { harmonic, slot, rate, inverse: Inverse::Factors(Box::new(factors)) })
         };
         Ok(ModalOrders { orders: harmonics.iter().map(order).collect::<Result<_, _>>()? })
     }
