@@ -140,23 +140,15 @@ def test_ctrl_c_keeps_the_levels_that_are_complete(
 ) -> None:
     threads(monkeypatch, count)
     study = read(LEVELS.replace("SPAN", "{ from = 50, to = 300, points = 60000 }"))
-    whole = []
-    start = 0.0
-
-    def stop() -> None:
-        nonlocal start
-        start = time.monotonic()
-        os.kill(os.getpid(), signal.SIGINT)
-
     found = study.run()
-    whole.append(next(found))
-    timer = threading.Timer(0.2, stop)
+    whole = [next(found)]
+    timer = threading.Timer(0.2, os.kill, [os.getpid(), signal.SIGINT])
     timer.start()
-    with pytest.raises((ss.Interrupted, KeyboardInterrupt)) as caught:
+    with pytest.raises(KeyboardInterrupt) as caught:
         whole.extend(found)
-    # One second asked; the machine may be busy.
-    assert time.monotonic() - start < 5.0
+    assert len(whole) < 5
     assert all(curve.status[-1].solved for curve in whole)
+    # It may have been complete when the signal came.
     if isinstance(caught.value, ss.Interrupted):
-        assert caught.value.result.interrupted
-        assert caught.value.result.omega.size < 60000
+        part = caught.value.result
+        assert part.interrupted == (part.omega.size < 60000)
