@@ -15,7 +15,7 @@ use super::modal_work::{of_step, suits};
 use super::ring_newton::RingNewton;
 use super::solution::Point;
 use super::unknowns::Unknowns;
-use crate::contact::Residual;
+use crate::contact::{Residual, SlipLoad};
 use crate::fourier::{Harmonics, SampleTable};
 use crate::model::Model;
 use crate::solve::{norm, System as _};
@@ -168,11 +168,19 @@ impl Effort<'_> {
     }
 }
 
-/// Sum over all harmonics of the change that the extended balance would bring to each observed
-/// DOF \[m\]; infinite where a discarded harmonic meets a resonance that nothing damps. `solved` are
-/// the equations that were solved, if they are at hand. Nothing if the analysis is to end.
+/// What an extended balance says.
+pub(super) struct Estimate {
+    /// Sum over all harmonics of the change that it would bring to each observed DOF \[m\]; infinite
+    /// where a discarded harmonic meets a resonance that nothing damps.
+    pub(super) errors: Vec<f64>,
+    /// By how much its second step was to multiply them, if it was made and contacts kept their states.
+    pub(super) growth: Option<Vec<f64>>,
+}
+
+/// The estimate of a solution; `solved` are the equations that were solved, if they are at hand, and
+/// `growth` that of a point beside, if it is known. Nothing if the analysis is to end.
 #[allow(clippy::too_many_arguments)]
-pub(super) fn errors(
+pub(super) fn estimate(
     model: &Model,
     table: &SampleTable,
     residual: Residual,
@@ -181,9 +189,10 @@ pub(super) fn errors(
     point: &Point,
     solved: Option<&Condensed<'_>>,
     extension: &Extension,
+    growth: Option<&[f64]>,
     interrupted: &dyn Fn() -> bool,
-) -> Result<Option<Vec<f64>>, Error> {
-    let infinite = Ok(Some(vec![f64::INFINITY; observe.len()]));
+) -> Result<Option<Estimate>, Error> {
+    let infinite = Ok(Some(Estimate { errors: vec![f64::INFINITY; observe.len()], growth: None }));
     let mut extended = Condensed::new(model, table, residual, false);
     extended.watch(interrupted);
     if extended.set_omega_beside(point.omega, solved).is_err() {
@@ -192,7 +201,8 @@ pub(super) fn errors(
     let mut x = solution.recast(table.harmonics());
     let (mut defect, mut step) = (vec![0.0; x.len()], vec![0.0; x.len()]);
     extended.residual(&x, &mut defect);
-    let mut errors = vec![0.0_f64; observe.len()];
+    let mut first = Vec::new();
+    let mut found = Estimate { errors: vec![0.0_f64; observe.len()], growth: None };
     let mut trusted = TRUSTED;
     for last in [false, true] {
         if extended.interrupted() {
@@ -206,15 +216,27 @@ pub(super) fn errors(
         extended.add_tangent_product(&step, &mut slip_load);
         x.iter_mut().zip(&step).for_each(|(x, s)| *x += s);
         let changes = changes(&extended, &x, &slip_load, observe, point)?;
-        errors.iter_mut().zip(changes).for_each(|(error, change)| {
-            *error = if last { error.max(change.min(trusted * *error)) } else { change };
-        });
-        if last || !extension.second_step {
+        if last {
+            let errors = found.errors.iter_mut().zip(changes);
+            errors.for_each(|(error, change)| *error = error.max(change.min(trusted * *error)));
             break;
         }
-        let (before, slipped) = (by_point(&defect, table), slipping(&extended));
+        (found.errors, first) = (changes.clone(), changes);
+        if !extension.second_step {
+            break;
+        }
+        let slipped = slipping(&extended.loads);
+        if let Some(growth) = growth {
+            extended.evaluate_laws(&x, false);
+            if slipped == slipping(&extended.values) {
+                found.errors.iter_mut().zip(growth).for_each(|(error, by)| *error *= by);
+                first.clear();
+                break;
+            }
+        }
+        let before = by_point(&defect, table);
         extended.residual(&x, &mut defect);
-        if slipped != slipping(&extended) {
+        if slipped != slipping(&extended.loads) {
             trusted = f64::INFINITY;
         }
         let mut after = by_point(&defect, table).into_iter().zip(before);
@@ -222,13 +244,18 @@ pub(super) fn errors(
             break;
         }
     }
-    errors.iter_mut().for_each(|error| *error *= extension.unseen);
-    Ok(Some(errors))
+    if extension.second_step && trusted.is_finite() && !first.is_empty() {
+        let growth = found.errors.iter().zip(first);
+        let growth = growth.map(|(error, first)| if *error > first { error / first } else { 1.0 });
+        found.growth = Some(growth.map(|by| if by.is_finite() { by } else { 1.0 }).collect());
+    }
+    found.errors.iter_mut().for_each(|error| *error *= extension.unseen);
+    Ok(Some(found))
 }
 
-/// Which contacts slip where the tangents are known.
-fn slipping(extended: &Condensed<'_>) -> Vec<bool> {
-    extended.loads.iter().map(|load| load.active).collect()
+/// Which contacts slip.
+fn slipping(loads: &[SlipLoad]) -> Vec<bool> {
+    loads.iter().map(|load| load.active).collect()
 }
 
 /// Sizes of the series of all points.

@@ -1,6 +1,6 @@
 //! How wrong a solution of the condensed equations is.
 
-use super::accuracy::{errors, Extension};
+use super::accuracy::{estimate, Estimate, Extension};
 use super::condensed::Condensed;
 use super::forced::ForcedBalance;
 use super::sampling::{finer_than, sampling_errors};
@@ -71,7 +71,10 @@ impl ForcedBalance<'_> {
         let solution = Unknowns { harmonics: harmonics.clone(), values: x.to_vec() };
         let residual = self.settings.residual;
         let ask = self.interruption();
-        let errors = errors(
+        // Where harmonics are chosen, every estimate decides by itself.
+        let fixed = self.control.is_fixed();
+        let growth = fixed.then(|| self.neighbour.growth(point)).flatten();
+        let estimate = estimate(
             &model,
             &table,
             residual,
@@ -80,16 +83,22 @@ impl ForcedBalance<'_> {
             point,
             solved,
             &extension,
+            growth.as_deref(),
             &ask,
         )?;
-        let done = errors.is_some();
+        let Some(Estimate { errors, growth: learnt }) = estimate else {
+            point.error_estimate = vec![f64::NAN; observed];
+            return Ok(false);
+        };
+        if growth.is_none() || learnt.is_some() {
+            self.neighbour.learn(point, learnt.unwrap_or_default());
+        }
         // DOFs without mass move with kinks: harmonics fall with the square of their order, and the error
         // with the first power of H, so that the extended balance has a known share of it.
         let massless = !self.model.structure().massless().is_empty();
         let unseen =
             if massless { order as f64 / (order - harmonics.highest()) as f64 } else { 1.0 };
-        let errors = errors.map(|own| own.into_iter().map(|error| unseen * error).collect());
-        point.error_estimate = errors.unwrap_or_else(|| vec![f64::NAN; observed]);
-        Ok(done)
+        point.error_estimate = errors.into_iter().map(|error| unseen * error).collect();
+        Ok(true)
     }
 }

@@ -2,6 +2,7 @@
 
 use super::condensed::Condensed;
 use super::evaluation::{Evaluated, Evaluations};
+use super::neighbour::Neighbour;
 use super::resolution_control::{Level, ResolutionControl};
 use super::scale::Scale;
 use super::settings::{Resolution, Settings};
@@ -28,6 +29,7 @@ pub struct ForcedBalance<'a> {
     pub(super) forced: Vec<usize>,
     tables: Tables,
     evaluations: Evaluations<'a>,
+    pub(super) neighbour: Neighbour,
     pub(super) control: ResolutionControl,
     pub(super) scale: Scale,
     /// The tangent at the last point of a sweep whose branch was asked for.
@@ -86,6 +88,7 @@ impl<'a> ForcedBalance<'a> {
             control: ResolutionControl::new(settings, &forced),
             forced,
             tables: Tables::default(),
+            neighbour: Neighbour::default(),
             evaluations: Evaluations::new(model.clone()),
             model,
             scale: Scale::default(),

@@ -24,6 +24,7 @@ mod limit_cycle;
 mod linear;
 mod linearised;
 mod modal_work;
+mod neighbour;
 mod open_mean;
 mod peak;
 mod price;

@@ -133,7 +133,10 @@ impl Harmonics {
     #[must_use]
     pub fn jets<const N: usize>(&self, series: [&[f64]; N], theta: f64) -> [[f64; 3]; N] {
         let mut jets = series.map(|series| [self.mean(series), 0.0, 0.0]);
-        self.rotate(theta, |order, cos, sin, slot| {
+        // A series of fewer harmonics than are kept ends with zeros.
+        let last = series.iter().filter_map(|series| series.iter().rposition(|x| *x != 0.0)).max();
+        let count = last.map_or(0, |last| (last + 2).saturating_sub(self.offset()) / 2);
+        self.rotate(theta, count, |order, cos, sin, slot| {
             for (jet, series) in jets.iter_mut().zip(series) {
                 let (a, b) = (series[slot], series[slot + 1]);
                 let (in_phase, quadrature) = (a * cos + b * sin, b * cos - a * sin);
@@ -150,7 +153,7 @@ impl Harmonics {
         if self.has_mean() {
             basis[0] = 1.0;
         }
-        self.rotate(theta, |_, cos, sin, slot| {
+        self.rotate(theta, self.oscillating.len(), |_, cos, sin, slot| {
             basis[slot] = cos;
             basis[slot + 1] = sin;
         });
@@ -161,7 +164,7 @@ impl Harmonics {
         if self.has_mean() {
             out[0] = theta;
         }
-        self.rotate(theta, |order, cos, sin, slot| {
+        self.rotate(theta, self.oscillating.len(), |order, cos, sin, slot| {
             out[slot] = sin / order;
             out[slot + 1] = -cos / order;
         });
@@ -179,10 +182,10 @@ impl Harmonics {
         }
     }
 
-    /// Calls `visit(k, cos kθ, sin kθ, slot)` for every k ≥ 1, by rotation instead of one
+    /// Calls `visit(k, cos kθ, sin kθ, slot)` for the first `count` orders k ≥ 1, by rotation instead of one
     /// sine and cosine per order.
     #[inline]
-    fn rotate(&self, theta: f64, mut visit: impl FnMut(f64, f64, f64, usize)) {
+    fn rotate(&self, theta: f64, count: usize, mut visit: impl FnMut(f64, f64, f64, usize)) {
         let (sin_1, cos_1) = theta.sin_cos();
         let (step, (sin_step, cos_step)) = if self.half_wave {
             let double = (2.0 * sin_1 * cos_1, (cos_1 - sin_1) * (cos_1 + sin_1));
@@ -192,7 +195,7 @@ impl Harmonics {
         };
         let (mut order, mut cos, mut sin) = (1.0, cos_1, sin_1);
         let mut slot = self.offset();
-        for _ in &self.oscillating {
+        for _ in 0..count {
             visit(order, cos, sin, slot);
             (cos, sin) = (cos * cos_step - sin * sin_step, sin * cos_step + cos * sin_step);
             order += step;

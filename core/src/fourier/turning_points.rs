@@ -190,7 +190,9 @@ impl SampleTable {
                 if order % 2 == parity {
                     let slot = self.harmonics.offset() + 2 * index;
                     let (of_cos, of_sin) = of(order as f64, series[slot], series[slot + 1]);
-                    factors.push((index * all, [of_cos, of_sin]));
+                    if of_cos != 0.0 || of_sin != 0.0 {
+                        factors.push((index * all, [of_cos, of_sin]));
+                    }
                 }
             }
             let mut sums = vec![0.0; 2 * length];
