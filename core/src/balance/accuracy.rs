@@ -15,7 +15,7 @@ use super::modal_work::{of_step, suits};
 use super::ring_newton::RingNewton;
 use super::solution::Point;
 use super::unknowns::Unknowns;
-use crate::contact::{Residual, SlipLoad};
+use crate::contact::Residual;
 use crate::fourier::{Harmonics, SampleTable};
 use crate::model::Model;
 use crate::solve::{norm, System as _};
@@ -225,18 +225,15 @@ pub(super) fn estimate(
         if !extension.second_step {
             break;
         }
-        let slipped = slipping(&extended.loads);
-        if let Some(growth) = growth {
-            extended.evaluate_laws(&x, false);
-            if slipped == slipping(&extended.values) {
-                found.errors.iter_mut().zip(growth).for_each(|(error, by)| *error *= by);
-                first.clear();
-                break;
-            }
+        if let Some(growth) = growth.filter(|_| extended.keeps_states(&x)) {
+            found.errors.iter_mut().zip(growth).for_each(|(error, by)| *error *= by);
+            first.clear();
+            break;
         }
+        let slipped = slipping(&extended);
         let before = by_point(&defect, table);
         extended.residual(&x, &mut defect);
-        if slipped != slipping(&extended.loads) {
+        if slipped != slipping(&extended) {
             trusted = f64::INFINITY;
         }
         let mut after = by_point(&defect, table).into_iter().zip(before);
@@ -253,9 +250,9 @@ pub(super) fn estimate(
     Ok(Some(found))
 }
 
-/// Which contacts slip.
-fn slipping(loads: &[SlipLoad]) -> Vec<bool> {
-    loads.iter().map(|load| load.active).collect()
+/// Which contacts slip where the tangents are known.
+fn slipping(extended: &Condensed<'_>) -> Vec<bool> {
+    extended.loads.iter().map(|load| load.active).collect()
 }
 
 /// Sizes of the series of all points.

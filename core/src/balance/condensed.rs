@@ -274,6 +274,19 @@ impl<'a> Condensed<'a> {
         self.loads.iter().all(|load| !load.active)
     }
 
+    /// Whether the contacts that slip at other unknowns are those that slip where the tangents are known.
+    pub(super) fn keeps_states(&self, x: &[f64]) -> bool {
+        let mut load = SlipLoad::default();
+        self.model.laws().iter().enumerate().all(|(index, law)| {
+            let motion = self.motion(index, x);
+            let slips = law.surely_slips(motion).unwrap_or_else(|| {
+                law.slip_load(motion, false, &mut load);
+                load.active
+            });
+            slips == self.loads[index].active
+        })
+    }
+
     /// `out += G q` over all kept harmonics.
     pub fn add_response(&self, slip_load: &[f64], out: &mut [f64]) {
         self.linear.add_response(self.model.compliance(), self.table.harmonics(), slip_load, out);

@@ -23,8 +23,8 @@ const CARRIES_NOTHING: f64 = 1e-3;
 const LEAST_LOSS: f64 = 1e-12;
 
 impl Condensed<'_> {
-    /// The slip loads of all laws, with their tangents or without.
-    pub(super) fn evaluate_laws(&mut self, x: &[f64], tangent: bool) {
+    /// Residual, with the tangents of the laws or without.
+    fn evaluate(&mut self, x: &[f64], tangent: bool, out: &mut [f64]) {
         let mut loads = std::mem::take(if tangent { &mut self.loads } else { &mut self.values });
         let mut law_time = std::time::Duration::ZERO;
         Profile::time(&mut law_time, || {
@@ -54,11 +54,6 @@ impl Condensed<'_> {
             self.values = loads;
         }
         self.moved_on = !tangent;
-    }
-
-    /// Residual, with the tangents of the laws or without.
-    fn evaluate(&mut self, x: &[f64], tangent: bool, out: &mut [f64]) {
-        self.evaluate_laws(x, tangent);
         out.fill(0.0);
         self.add_response(&self.slip_load(), out);
         for ((r, x), stuck) in out.iter_mut().zip(x).zip(&self.stuck) {

@@ -19,6 +19,7 @@ use super::{
     ContactLaw, Describing, Held, Motion, Parameter, Parameters, Phase, PointSummary, Residual,
     Slider, SlipLoad,
 };
+use crate::solve::norm;
 use crate::Error;
 use faer::Mat;
 use std::f64::consts::TAU;
@@ -90,8 +91,7 @@ impl Jenkins {
         if harmonics.has_mean() {
             return false;
         }
-        let amplitudes =
-            motion.displacement.chunks_exact(2).map(|x| (x[0] * x[0] + x[1] * x[1]).sqrt());
+        let amplitudes = motion.displacement.chunks_exact(2).map(norm);
         let largest = (1.0 + ROUNDING) * amplitudes.sum::<f64>();
         let sticks = |slider: &Slider| {
             slider.stiffness > 0.0 && slider.stiffness * largest < slider.slip_force
@@ -154,6 +154,21 @@ impl ContactLaw for Jenkins {
             1 => self.sliders[0].limit(),
             _ => self.total_stiffness() * onset.fold(f64::INFINITY, f64::min),
         }]
+    }
+
+    fn surely_slips(&self, motion: Motion<'_>) -> Option<bool> {
+        if self.surely_sticks(motion) {
+            return Some(false);
+        }
+        let harmonics = motion.table.harmonics();
+        let mut pairs = motion.displacement[harmonics.offset()..].chunks_exact(2);
+        let fundamental = pairs.next().map_or(0.0, norm);
+        let least = fundamental - pairs.map(norm).sum::<f64>();
+        let slips = |slider: &Slider| {
+            slider.slip_force > 0.0
+                && slider.stiffness * least > (1.0 + ROUNDING) * slider.slip_force
+        };
+        self.sliders.iter().any(slips).then_some(true)
     }
 
     fn return_map(

@@ -120,6 +120,11 @@ pub trait ContactLaw: Send + Sync + std::fmt::Debug {
         self.limits()
     }
 
+    /// Whether the contact slips in a periodic motion, as far as its amplitudes alone show it.
+    fn surely_slips(&self, _motion: Motion<'_>) -> Option<bool> {
+        None
+    }
+
     /// Return map of one step: takes the state through a change of the displacements and gives the
     /// force after it. All states are zero where the displacements are and nothing has slipped.
     fn return_map(

@@ -62,7 +62,12 @@ impl SampleTable {
         // The angles of all orders are multiples of the same step.
         let count = 4 * quarter;
         let step = std::f64::consts::TAU / count as f64;
-        let unit: Vec<_> = (0..count).map(|i| (i as f64 * step).sin_cos()).collect();
+        let mut unit: Vec<_> = (0..quarter).map(|i| (i as f64 * step).sin_cos()).collect();
+        // A quarter of the period later the sine is the cosine.
+        for i in quarter..count {
+            let (sin, cos) = unit[i - quarter];
+            unit.push((cos, -sin));
+        }
         let row = padded(quarter + 1);
         let size = row * harmonics.oscillating().len();
         let (mut cos, mut sin) = (vec![0.0; size], vec![0.0; size]);
