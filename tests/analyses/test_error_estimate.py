@@ -149,6 +149,24 @@ def test_estimates_do_not_depend_on_the_way_to_the_solution() -> None:
         )
 
 
+@pytest.mark.parametrize("harmonics", [1, 3])
+def test_estimates_along_a_curve_are_those_of_its_frequencies(harmonics: int) -> None:
+    # Beside a point at which it was made, the second step counts as much as there: 1 to 2 times.
+    for model, omega in (
+        (ss.reference.snecma_beam(20.313), np.linspace(150.0, 250.0, 41)),
+        (many_contacts(4), np.linspace(140.0, 160.0, 21)),
+    ):
+        curve = ss.forced_response(model, omega, harmonics)
+        alone = [ss.forced_response(model, [one], harmonics) for one in omega]
+        for dof in curve.dofs[:4]:
+            own = np.array([one.error_estimate(dof)[0] for one in alone])
+            slips = own > 0.0
+            ratio = curve.error_estimate(dof)[slips] / own[slips]
+            assert ratio.min() > 0.49
+            assert ratio.max() < 2.02
+            assert np.median(ratio) == pytest.approx(1.0, abs=0.1)
+
+
 @pytest.mark.slow
 def test_loaded_and_named_dofs_drive_automatic_harmonics_and_steps() -> None:
     blade = ss.reference.turbine_blade()
