@@ -3,13 +3,15 @@
 Usage::
 
     python benchmarks/contacts.py            # laws, samples, two blades and a wedge
-    python benchmarks/contacts.py --peers    # and one contact in space with pyHarm-os
+    python benchmarks/contacts.py --peers    # and a contact in space and a wedge with pyHarm-os
 
 One mass on contacts, so that the laws take nearly all the time: laws without sliders, a planar node
 and one in space, the nodes exact and sampled, against a Jenkins element; the laws without sliders
 once more at 15 harmonics; the node in space by fixed samples, with their error. Then two blades and
 a wedge of six degrees of freedom (Balaji and Ferhatoglu 2025): 91 frequencies with automatic
 harmonics. Processor times on one thread.
+
+tmdsimpy is not on PyPI: it cannot be installed for these runs, and is not in them.
 """
 
 from __future__ import annotations
@@ -22,6 +24,7 @@ import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 for variable in ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS"):
     os.environ[variable] = "1"
@@ -33,7 +36,9 @@ from stickslip.model import Contact
 
 HERE = Path(__file__).parent
 GRID = np.linspace(150.0, 420.0, 200)
+AROUND = 2.0 * np.pi * np.linspace(42.0, 51.0, 91)
 HARMONICS = 7
+PEER_HARMONICS = (9, 27)
 TIMES = 5
 
 
@@ -69,35 +74,60 @@ def in_space() -> ss.Model:
     return mass(ss.Coulomb(list("xyz"), normal=[0, 0, 1], **CONTACT))
 
 
-def wedge() -> ss.Model:
-    """Return two blades and a wedge, held by its contacts and a spring between its directions."""
+SINE, COSINE = np.sin(np.deg2rad(40.0)), np.cos(np.deg2rad(40.0))
+FACES = {1: [-SINE, COSINE], 2: [SINE, COSINE]}
+FACE = {"friction": 0.6, "tangential_stiffness": 3e5, "normal_stiffness": 3e5}
+PRESS, PUSH = 240.0, 10.0
+BLOCKS = ([[1e6, -9e5], [-9e5, 1e6]], [[4e5, -3e5], [-3e5, 4e5]], [[1e6, -1e6], [-1e6, 1e6]])
+MASSES, DAMPINGS = (10.0, 10.0, 0.1), (20.0, 20.0, 0.0)
+
+
+def wedge(preloads: tuple[float, float] | None = None) -> ss.Model:
+    """Return two blades and a wedge, held by its contacts and a spring between its directions.
+
+    A static load presses the wedge, or the faces have preloads [N].
+    """
     names = ["x1", "y1", "x2", "y2", "xD", "yD"]
-    stiffness = np.zeros((6, 6))
-    blocks = ([[1e6, -9e5], [-9e5, 1e6]], [[4e5, -3e5], [-3e5, 4e5]], [[1e6, -1e6], [-1e6, 1e6]])
-    for place, block in enumerate(blocks):
-        stiffness[2 * place : 2 * place + 2, 2 * place : 2 * place + 2] = block
-    masses = np.diag([10.0, 10.0, 10.0, 10.0, 0.1, 0.1])
-    damping = np.diag([20.0, 20.0, 20.0, 20.0, 0.0, 0.0])
-    structure = ss.Structure(masses, stiffness, damping, names)
-    s, c = np.sin(np.deg2rad(40.0)), np.cos(np.deg2rad(40.0))
+    structure = ss.Structure(
+        np.diag(np.repeat(MASSES, 2)),
+        np.block([[np.array(BLOCKS[i]) * (i == j) for j in range(3)] for i in range(3)]),
+        np.diag(np.repeat(DAMPINGS, 2)),
+        names,
+    )
     faces = [
         ss.Coulomb(
             ["xD", "yD"],
             [f"x{blade}", f"y{blade}"],
-            normal=[side * s, c],
-            friction=0.6,
-            tangential_stiffness=3e5,
-            normal_stiffness=3e5,
+            normal=normal,
+            preload=None if preloads is None else preloads[blade - 1],
+            **FACE,
         )
-        for blade, side in ((1, -1.0), (2, 1.0))
+        for blade, normal in FACES.items()
     ]
-    forces = [ss.Force("yD", 240.0, harmonic=0), ss.Force("x1", 10.0), ss.Force("x2", -10.0)]
+    forces = [ss.Force("x1", PUSH), ss.Force("x2", -PUSH)]
+    if preloads is None:
+        forces.append(ss.Force("yD", PRESS, harmonic=0))
     return ss.Model(structure, faces, forces)
 
 
+def normal_loads() -> tuple[float, float]:
+    """Return the normal forces of the static load where no face takes up friction [N]."""
+    model, rows = wedge(), np.zeros((2, 6))
+    for row, (blade, normal) in zip(rows, FACES.items(), strict=True):
+        row[4:] = normal
+        row[2 * blade - 2 : 2 * blade] = [-n for n in normal]
+    stiff = FACE["normal_stiffness"]
+    load = np.zeros(6)
+    load[5] = PRESS
+    first, second = stiff * rows @ np.linalg.solve(
+        model.structure.stiffness + stiff * rows.T @ rows, load
+    )
+    return float(first), float(second)
+
+
 def amplitudes(result: ss.ForcedResponse) -> np.ndarray:
-    """Return the amplitudes of all directions, (3, frequencies)."""
-    return np.array([result.amplitude(dof) for dof in "xyz"])
+    """Return the amplitudes of all directions, (directions, frequencies)."""
+    return np.array([result.amplitude(dof) for dof in result.dofs])
 
 
 def largest_error(found: np.ndarray, exact: np.ndarray) -> float:
@@ -166,34 +196,9 @@ def by_samples() -> None:
         print(f"  {samples:5} samples {1e6 * spent:8.1f} us, amplitudes wrong by {error:.1e}")
 
 
-def against_peer(folder: Path) -> None:
-    """Print the same contact in space in pyHarm-os, by its penalty contact."""
-    python = folder / "bin" / "python"
-    if not python.exists():
-        print(f"pyHarm-os: not installed in {folder}; 'make peers' installs it")
-        return
-    model, points = in_space(), 60
-    grid = np.linspace(GRID[0], GRID[-1], points)
-
-    def work() -> ss.ForcedResponse:
-        return ss.forced_response(model, grid, HARMONICS, stability=False)
-
-    spent, result = least(work)
-    exact = amplitudes(result)
-    print(f"one contact in space, {points} frequencies: {1e3 * spent:.0f} ms; pyHarm-os:")
-    force = [p * np.exp(1j * phase) for p, phase in FORCES]
-    # Its contact takes what opens it as positive.
-    force[2] = -force[2]
-    study = {
-        "mass": [1.0] * 3,
-        "damping": DAMPING,
-        "stiffness": STIFFNESS,
-        "force": [[one.real, one.imag] for one in force],
-        "contact": CONTACT,
-        "omega": [grid[0], grid[-1]],
-        "points": points,
-        "harmonics": HARMONICS,
-    }
+def by_peer(python: Path, study: dict[str, Any], exact: np.ndarray, spent: float) -> None:
+    """Print the study in pyHarm-os by some samples, against amplitudes and the time they took."""
+    grid = np.linspace(*study["omega"], study["points"])
     for samples in (64, 256, 1024):
         with tempfile.TemporaryDirectory() as scratch:
             path = Path(scratch) / "study.json"
@@ -215,6 +220,79 @@ def against_peer(folder: Path) -> None:
         )
 
 
+def peer_contact(python: Path) -> None:
+    """Print one contact in space, here and in pyHarm-os, by its penalty contact."""
+    model, points = in_space(), 60
+    grid = np.linspace(GRID[0], GRID[-1], points)
+    spent, result = least(lambda: ss.forced_response(model, grid, HARMONICS, stability=False))
+    print(f"one contact in space, {points} frequencies: {1e3 * spent:.0f} ms; pyHarm-os:")
+    force = [p * np.exp(1j * phase) for p, phase in FORCES]
+    structure = model.structure
+    # Its contacts take what opens them as positive.
+    contact = {"between": ["mass"], "normal": [0, 0, -1], "tangents": [[1, 0, 0], [0, 1, 0]]}
+    study = {
+        "bodies": {"mass": matrices(structure.mass, structure.damping, structure.stiffness)},
+        "contacts": [contact | CONTACT],
+        "forces": [["mass", i, one.real, one.imag] for i, one in enumerate(force)],
+        "omega": [grid[0], grid[-1]],
+        "points": points,
+        "harmonics": HARMONICS,
+        "momentum": 0.0,
+    }
+    by_peer(python, study, amplitudes(result), spent)
+
+
+def peer_wedge(python: Path) -> None:
+    """Print two blades and a wedge with the normal forces of its load as preloads, here and there.
+
+    Sliders start at rest in both programs. Errors are those against 63 harmonics.
+    """
+    loads = normal_loads()
+    model = wedge(loads)
+
+    def curve(harmonics: int | str) -> ss.ForcedResponse:
+        return ss.forced_response(
+            model, AROUND, harmonics, residual="from_rest", stability=False, tolerance=1e-3
+        )
+
+    exact = amplitudes(curve(63))
+    spent, result = least(lambda: curve("auto"))
+    error = largest_error(amplitudes(result), exact)
+    highest = int(result.harmonics.max())
+    print(f"two blades and a prestressed wedge, {len(AROUND)} frequencies: {1e3 * spent:.0f} ms,")
+    print(f"  harmonics to {highest}, amplitudes wrong by {error:.1e}; pyHarm-os:")
+    names = ["blade 1", "blade 2", "damper"]
+    study = {
+        "bodies": {
+            name: matrices(m * np.eye(2), c * np.eye(2), np.array(block))
+            for name, m, c, block in zip(names, MASSES, DAMPINGS, BLOCKS, strict=True)
+        },
+        "contacts": [
+            {
+                "between": ["damper", f"blade {blade}"],
+                "normal": [-n for n in normal],
+                "tangents": [[normal[1], -normal[0]]],
+                "preload": loads[blade - 1],
+            }
+            | FACE
+            for blade, normal in FACES.items()
+        ],
+        "forces": [["blade 1", 0, PUSH, 0.0], ["blade 2", 0, -PUSH, 0.0]],
+        "omega": [AROUND[0], AROUND[-1]],
+        "points": len(AROUND),
+        # Without it Newton's method ends where a face begins to slip.
+        "momentum": 0.5,
+    }
+    for harmonics in PEER_HARMONICS:
+        print(f"  {harmonics} harmonics:")
+        by_peer(python, study | {"harmonics": harmonics}, exact, spent)
+
+
+def matrices(mass: np.ndarray, damping: np.ndarray, stiffness: np.ndarray) -> dict[str, Any]:
+    """Return the matrices of a body as the peer's script reads them."""
+    return {"mass": mass.tolist(), "damping": damping.tolist(), "stiffness": stiffness.tolist()}
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description="Speed of friction contacts.")
     parser.add_argument("--peers", action="store_true", help="run pyHarm-os as well")
@@ -224,13 +302,16 @@ def main() -> None:
     laws()
     by_samples()
     two_blades = wedge()
-    around = 2.0 * np.pi * np.linspace(42.0, 51.0, 91)
-    spent, result = least(lambda: ss.forced_response(two_blades, around, stability=False))
+    spent, result = least(lambda: ss.forced_response(two_blades, AROUND, stability=False))
     solved = int(result.converged.sum())
     print(f"two blades and a wedge: {solved} of 91 frequencies in {1e3 * spent:.0f} ms,")
     print(f"  harmonics to {result.harmonics.max()}, {result.counters['evaluations']} evaluations")
-    if options.peers:
-        against_peer(options.environment)
+    python = options.environment / "bin" / "python"
+    if options.peers and not python.exists():
+        print(f"pyHarm-os: not installed in {options.environment}; 'make peers' installs it")
+    elif options.peers:
+        peer_contact(python)
+        peer_wedge(python)
 
 
 if __name__ == "__main__":

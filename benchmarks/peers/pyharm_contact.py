@@ -1,16 +1,19 @@
-"""Forced response of a mass on a plane with friction, solved by pyHarm-os.
+"""Forced response of bodies on contacts with friction, solved by pyHarm-os.
 
-The peer side of a benchmark: three degrees of freedom, one contact with friction in two directions
-under a normal load that varies and vanishes (pyHarm's penalty contact, ``Penalty3D``), and a sweep
-at equally spaced frequencies. Prints one line of JSON; everything else goes to the standard error.
+The peer side of a benchmark: bodies of two or three directions each, contacts with friction between
+them or to the ground under normal forces that vary and vanish (pyHarm's penalty contact,
+``Penalty3D``), and a sweep at equally spaced frequencies. Prints one line of JSON; everything else
+goes to the standard error.
 
 Run it with the interpreter of the peer's environment::
 
     python pyharm_contact.py study.json
 
-The file holds ``mass, damping, stiffness`` (diagonals), ``force`` (pairs of real and imaginary
-part), ``contact`` (friction, tangential_stiffness, normal_stiffness, preload), ``omega = [first,
-last]``, ``points``, ``harmonics`` and ``samples``.
+The file holds ``bodies`` (by name: ``mass, damping, stiffness``, matrices), ``contacts`` (each of
+``between``, one or two bodies, ``normal``, ``tangents``, friction, stiffnesses and preload),
+``forces`` (each of body, direction, real and imaginary part), ``omega = [first, last]``,
+``points``, ``harmonics``, ``samples`` and ``momentum``, the share of the last Jacobian that pyHarm's
+Newton method keeps. Amplitudes are given in the order of the bodies.
 
 pyHarm-os 1.2.2 leaves jax, by which this contact is evaluated, in single precision: then Newton's
 method does not reach its tolerance at any frequency. Double precision is set below.
@@ -18,7 +21,8 @@ method does not reach its tolerance at any frequency. Double precision is set be
 pyHarm's contact takes the displacement that opens it as positive. With a preload its march is the
 radial return of a circular cone, three periods long: first order in the distance of the samples.
 With a gap and no preload, pyHarm-os 1.2.2 keeps its friction only where the contact is open (the
-mask of ``JenkinsResidual_jax``), so that a wedge pressed by a static load cannot be compared.
+mask of ``JenkinsResidual_jax``), so that a wedge is compared in its prestressed form: the normal
+forces of its static load as preloads.
 """
 
 from __future__ import annotations
@@ -36,30 +40,46 @@ import numpy as np
 from pyharm_beam import WAVEFORM_POINTS, peer_surroundings
 
 
+def contact(study: dict[str, Any], system: str) -> dict[str, Any]:
+    """Return one contact, its directions those of a system of coordinates.
+
+    pyHarm's contact has two tangential directions. In a plane the one there is serves twice, each
+    time with half of the stiffness: then its cone is wider by the square root of two.
+    """
+    planar = len(study["normal"]) == 2
+    return {
+        "type": "Penalty3D",
+        "connect": {body: [0] for body in study["between"]},
+        "coordinatesystem": system,
+        "dirs": [0, 1, 1] if planar else [0, 1, 2],
+        "mu": study["friction"] / (np.sqrt(2.0) if planar else 1.0),
+        "k_t": study["tangential_stiffness"] / (2.0 if planar else 1.0),
+        "k_n": study["normal_stiffness"],
+        "N0": study["preload"],
+        "g": 0.0,
+    }
+
+
 def problem(study: dict[str, Any]) -> dict[str, Any]:
     """Return the input of pyHarm: system and sweep."""
-    matrices = {
-        name: np.diag(study[key]).astype(float)
-        for name, key in (("M", "mass"), ("C", "damping"), ("K", "stiffness"))
-    }
-    contact = study["contact"]
-    connectors: dict[str, Any] = {
-        "contact": {
-            "type": "Penalty3D",
-            "connect": {"mass": [0]},
-            "dirs": [2, 0, 1],
-            "mu": contact["friction"],
-            "k_t": contact["tangential_stiffness"],
-            "k_n": contact["normal_stiffness"],
-            "N0": contact["preload"],
-            "g": 0.0,
+    bodies = {
+        name: {
+            "matrix": {
+                letter: np.array(body[key], dtype=float)
+                for letter, key in (("M", "mass"), ("C", "damping"), ("K", "stiffness"))
+            },
+            "ndofs": len(body["mass"]),
         }
+        for name, body in study["bodies"].items()
     }
-    for direction, (real, imaginary) in enumerate(study["force"]):
+    contacts = {f"contact{i}": one for i, one in enumerate(study["contacts"])}
+    connectors = {name: contact(one, name) for name, one in contacts.items()}
+    coordinates = {name: [one["normal"], *one["tangents"]] for name, one in contacts.items()}
+    for number, (body, direction, real, imaginary) in enumerate(study["forces"]):
         for kind, amplitude in (("CosinusForcing", real), ("SinusForcing", -imaginary)):
-            connectors[f"{kind}{direction}"] = {
+            connectors[f"{kind}{number}"] = {
                 "type": kind,
-                "connect": {"mass": [0]},
+                "connect": {body: [0]},
                 "dirs": [direction],
                 "amp": amplitude,
             }
@@ -68,7 +88,7 @@ def problem(study: dict[str, Any]) -> dict[str, Any]:
     sweep = {
         "study": "frf",
         "solver": "NewtonRaphson",
-        "solver_options": {"max_iter": 50},
+        "solver_options": {"max_iter": 100, "momentum": study["momentum"]},
         "predictor": "secant",
         "predictor_options": {"norm": "om", "bifurcation_detect": False},
         "corrector": "nocontinuation",
@@ -85,7 +105,8 @@ def problem(study: dict[str, Any]) -> dict[str, Any]:
     orders = list(range(study["harmonics"] + 1))
     return {
         "system": {"type": "Base", "nh": orders, "nti": study["samples"]},
-        "substructures": {"mass": {"matrix": matrices, "ndofs": 3}},
+        "substructures": bodies,
+        "coordinates": coordinates,
         "connectors": connectors,
         "analysis": {"frf": sweep},
     }
@@ -96,8 +117,7 @@ def half_ranges(maestro: Any, states: np.ndarray) -> list[list[float]]:
     table = maestro.system.expl_dofs
     phase = np.linspace(0.0, 2.0 * np.pi, WAVEFORM_POINTS, endpoint=False)
     ranges = []
-    for direction in range(3):
-        unknowns = table[table["dof_num"] == direction]
+    for _, unknowns in table.groupby(["sub", "dof_num"], sort=False):
         basis = [
             np.cos(order * phase) if part == "c" else np.sin(order * phase)
             for order, part in zip(unknowns["harm"], unknowns["cs"], strict=True)

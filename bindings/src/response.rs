@@ -86,7 +86,7 @@ fn swept<'py>(
 /// How a curve ended, as Python knows it.
 fn end_name(end: CurveEnd) -> &'static str {
     match end {
-        CurveEnd::Range | CurveEnd::Interrupted => "range",
+        CurveEnd::Range | CurveEnd::Interrupted | CurveEnd::Closed => "range",
         CurveEnd::Returned => "returned",
         CurveEnd::Stalled => "stalled",
         CurveEnd::Points => "points",
@@ -104,6 +104,7 @@ pub fn curve<'a, 'py>(
     let computed = points.clone().filter(|point| point.status != PointStatus::NotComputed);
     columns.one("fold", points.clone().map(|point| point.fold))?;
     columns.one("jump", points.clone().map(|point| point.jump))?;
+    columns.one("further", points.clone().map(|point| point.further))?;
     columns.one("stability", points.clone().map(|point| stability_code(point.stable)))?;
     columns.tell("half_wave", half_wave)?;
     columns.tell("computed", computed.count())?;
@@ -135,7 +136,8 @@ pub fn forced_response<'py>(
             .watched(look)
             .rescued(&orbits)
             .driven_by(&driving)
-            .keeping(kept);
+            .keeping(kept)
+            .with_further_branches();
         let mut found = match omega {
             Frequencies::Range((from, to)) => sweep_range(balance, from, to),
             Frequencies::Grid(grid) => sweep(balance, &grid),

@@ -6,6 +6,7 @@
 
 use super::forced::ForcedBalance;
 use super::forced_curve::ForcedCurve;
+use super::further_branches::add_further_branches;
 use super::keep;
 use super::resolution_control::Decision;
 use super::settings::Resolution;
@@ -36,10 +37,15 @@ const SHORT: f64 = 1e-4;
 /// Distance of points of a curve that are the same.
 const SAME: f64 = 1e-9;
 
+/// Distance at which a branch has come back to its first point: other harmonics may have moved it.
+const CLOSED: f64 = 1e-2;
+
 /// A curve on its way.
 struct Walk<'a, 'b> {
     balance: &'b mut ForcedBalance<'a>,
     points: Vec<Arc<Point>>,
+    /// Whether it began inside the range.
+    inside: bool,
     /// Resonances with their bandwidths.
     stops: Vec<(f64, f64)>,
     bounds: (f64, f64),
@@ -64,6 +70,11 @@ pub(super) fn sweep_branch(
             (points, end) = (others, other_end);
         }
     }
+    if balance.further && matches!(end, CurveEnd::Range | CurveEnd::Returned) {
+        let complete =
+            add_further_branches(&mut balance, &mut points, (from.min(to), from.max(to)))?;
+        end = if complete { end } else { CurveEnd::Interrupted };
+    }
     let interrupted = end == CurveEnd::Interrupted;
     Ok(Solution { end, ..finish(balance, points, interrupted, start) })
 }
@@ -80,14 +91,25 @@ fn branch(
         let end = if ended { CurveEnd::Interrupted } else { CurveEnd::Stalled };
         return Ok((vec![Arc::new(first)], end));
     }
-    let stops = stops(balance, &first, from, to)?;
     balance.scale.include(&first);
     let first = Arc::new(first);
     keep(balance.kept, &first);
-    let bounds = (from.min(to), from.max(to));
-    let longest = LONGEST * (to - from).abs();
+    branch_through(balance, first, (from, to), (from.min(to), from.max(to)))
+}
+
+/// The branch from a point of it towards the end of a range, and how it ended.
+pub(super) fn branch_through(
+    balance: &mut ForcedBalance<'_>,
+    first: Arc<Point>,
+    (from, to): (f64, f64),
+    bounds: (f64, f64),
+) -> Result<(Vec<Arc<Point>>, CurveEnd), Error> {
+    let stops = stops(balance, &first, from, to)?;
+    let longest = LONGEST * (bounds.1 - bounds.0);
+    let inside = bounds.0 < from && from < bounds.1;
+    let points = vec![first];
     let mut walk =
-        Walk { balance, points: vec![first], stops, bounds, longest, raised: 0, evaluations: 0 };
+        Walk { balance, points, inside, stops, bounds, longest, raised: 0, evaluations: 0 };
     let end = walk.follow(from, to)?;
     Ok((walk.points, end))
 }
@@ -180,6 +202,9 @@ impl Walk<'_, '_> {
                     None => return Ok(Change::Ends(CurveEnd::Stalled)),
                 }
             }
+            if let Some(at) = self.closed(curve, &known, &z) {
+                (z, end) = (at, Some(CurveEnd::Closed));
+            }
             let iterations = walk.iterations - before.iterations;
             let Some(mut point) = self.solved(curve, &z, resolution, iterations)? else {
                 return Ok(Change::Ends(CurveEnd::Interrupted));
@@ -218,6 +243,17 @@ impl Walk<'_, '_> {
                 return Ok(Change::Resolution(next));
             }
         }
+    }
+
+    /// The first point of the branch, if a step has come by it in the direction in which it was left.
+    fn closed(&self, curve: &mut ForcedCurve<'_>, known: &[f64], z: &[f64]) -> Option<Vec<f64>> {
+        let [first, second, _, ..] = &self.points[..] else { return None };
+        let [from, to] = [known, z].map(|z| z[z.len() - 1]);
+        let (begin, ahead) = (first.omega, (to - from) * (second.omega - first.omega) > 0.0);
+        let passes = self.inside && ahead && (begin - from) * (begin - to) <= 0.0;
+        let first = curve.point(first.unknowns.as_ref().filter(|_| passes)?, begin);
+        let (at, _) = between(curve, known, z, begin)?;
+        (distance(&at, &first) < CLOSED).then_some(at)
     }
 
     /// Evaluations that may be made at this resolution until the next point.

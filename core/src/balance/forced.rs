@@ -37,6 +37,8 @@ pub struct ForcedBalance<'a> {
     progress: &'a Progress<'a>,
     pub(super) kept: Option<&'a Kept<Point>>,
     pub(super) rescue: Option<&'a dyn ExactOrbits>,
+    /// Whether further branches are looked for.
+    pub(super) further: bool,
     share: f64,
     pub(super) profile: Profile,
 }
@@ -96,6 +98,7 @@ impl<'a> ForcedBalance<'a> {
             progress: &|_| true,
             kept: None,
             rescue: None,
+            further: false,
             share: 0.0,
             profile: Profile::default(),
         })
@@ -120,6 +123,14 @@ impl<'a> ForcedBalance<'a> {
     #[must_use]
     pub fn keeping(mut self, kept: &'a Kept<Point>) -> Self {
         self.kept = Some(kept);
+        self
+    }
+
+    /// Has a curve over a range, whose laws are not monotone, be followed by those of its further
+    /// branches that are found.
+    #[must_use]
+    pub fn with_further_branches(mut self) -> Self {
+        self.further = true;
         self
     }
 

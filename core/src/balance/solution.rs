@@ -126,6 +126,8 @@ pub struct Point {
     pub fold: bool,
     /// Whether the sweep has come here from another branch.
     pub jump: bool,
+    /// Whether a further branch begins here, which the curve before does not come by.
+    pub further: bool,
     /// Whether the motion is stable, if that is decided.
     pub stable: Option<bool>,
     /// Bounds over the residual tractions, if they were asked for.
@@ -194,6 +196,7 @@ impl Point {
             ],
             fold: false,
             jump: false,
+            further: false,
             stable: None,
             bounds: None,
             unknowns: None,
@@ -213,6 +216,8 @@ pub enum CurveEnd {
     Stalled,
     /// As many points as allowed.
     Points,
+    /// Where it began: it is closed.
+    Closed,
     /// The caller ended the analysis.
     Interrupted,
 }

@@ -28,6 +28,7 @@ def branch_assumptions(
     if not model.problem.laws_not_monotone:
         return ()
     omega, folds = arrays.omega, int(arrays.fold.sum())
+    last = int(np.flatnonzero(np.append(arrays.further, True))[0]) - 1
     unstable = int((arrays.stability == STABILITY.index("unstable")).sum())
     unresolved = int(((arrays.stability == STABILITY.index("not decided")) & arrays.solved).sum())
     return present(
@@ -36,11 +37,12 @@ def branch_assumptions(
             unstable > 0 and told("unstable", points=unstable, _solved=int(arrays.solved.sum())),
             unresolved > 0 and told("stability-undecided/points", points=unresolved),
             _jumps(arrays),
+            _further(arrays),
             solution.end in _ENDS
             and told(
                 _ENDS[solution.end],
-                omega=float(omega[-1]),
-                points=omega.size,
+                omega=float(omega[last]),
+                points=last + 1,
                 _start=omega[0],
             ),
         )
@@ -61,4 +63,20 @@ def _jumps(arrays: Arrays) -> Diagnostic | None:
         jumps=int(jumps.size),
         _direction="upward" if after > before else "downward",
         _more=more,
+    )
+
+
+def _further(arrays: Arrays) -> Diagnostic | None:
+    """Name the first further branch, and how many there are."""
+    begins = np.flatnonzero(arrays.further)
+    if not begins.size:
+        return None
+    first = arrays.omega[begins[0] : [*begins, arrays.omega.size][1]]
+    return told(
+        "further-branches",
+        count=int(begins.size),
+        low=float(first.min()),
+        high=float(first.max()),
+        _branches="1 further branch" if begins.size == 1 else f"{begins.size} further branches",
+        _first="it reaches" if begins.size == 1 else "the first reaches",
     )

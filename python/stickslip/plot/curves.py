@@ -142,7 +142,7 @@ class _View:
         """Draw the curve, and crosses on the axis where there is no solution.
 
         Motions that are unstable or undecided are dashed or dotted, and named in the legend, unless
-        nothing is known of any. Squares mark folds.
+        nothing is known of any. Squares mark folds. Further branches are lines of their own.
         """
         omega = self.omega.factor * result.omega
         height = self._factor(result.model) * result.amplitude(self.dof, self.measure)
@@ -151,7 +151,7 @@ class _View:
         states = np.full(omega.size, "stable")
         if (result.stability != "not decided").any():
             states = np.where(solved, result.stability, "stable")
-        pieces = style.pieces(states)
+        pieces = style.pieces(states, result.arrays.further)
         # the legend shows a solid line, if any
         named_at = next((at for at, (_, state) in enumerate(pieces) if state == "stable"), 0)
         for number, (piece, state) in enumerate(pieces):

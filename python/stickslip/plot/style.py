@@ -24,6 +24,7 @@ from stickslip.checks import brief
 from stickslip.disk.rotor import rotor_order
 from stickslip.errors import ModelError
 from stickslip.results.arrays import Float
+from stickslip.results.arrays import Bool
 from stickslip.results.stability import STATES, States
 
 OmegaUnit: TypeAlias = Literal["rad/s", "Hz", "rpm"]
@@ -166,12 +167,20 @@ def name_states(ax: Axes, states: Iterable[States], *, single: bool = False) -> 
             ax.plot([], [], label=state, **looks)
 
 
-def pieces(states: States) -> list[tuple[slice, str]]:
-    """Return the runs of equal states along a line, each joined to the one before it."""
+def pieces(states: States, begins: Bool | None = None) -> list[tuple[slice, str]]:
+    """Return the runs of equal states along a line, each joined to the one before it.
+
+    But for those at which another line `begins`.
+    """
     if not states.size:
         return []
-    breaks = [0, *(np.flatnonzero(states[1:] != states[:-1]) + 1).tolist(), states.size]
-    return [(slice(max(start - 1, 0), end), str(states[start])) for start, end in pairwise(breaks)]
+    apart = np.zeros(states.size, np.bool_) if begins is None else begins
+    changes = (states[1:] != states[:-1]) | apart[1:]
+    breaks = [0, *(np.flatnonzero(changes) + 1).tolist(), states.size]
+    return [
+        (slice(start if apart[start] else max(start - 1, 0), end), str(states[start]))
+        for start, end in pairwise(breaks)
+    ]
 
 
 def slip_limits(ax: Axes, limit: float, *, lw: float = 0.9, ls: Any = STUCK) -> None:

@@ -148,6 +148,9 @@ class Arrays(PeriodicArrays):
     jump: Bool = column(
         "*", "1", "whether the sweep has come to the point from another branch", absent=False
     )
+    further: Bool = column(
+        "*", "1", "whether a further branch of the curve begins at the point", absent=_nowhere
+    )
     stability: Code = column(
         "*", "1", "whether the motion is stable", codes=STABILITY, absent="not decided"
     )

@@ -58,6 +58,15 @@ class ForcedResponse(BladeMotion, Sensitivities, Bounded):
         return constant(np.flatnonzero(self.arrays.jump))
 
     @cached_property
+    def branch(self) -> Int:
+        """Number of the branch that each point lies on, (n,).
+
+        0 is the branch that begins at the end of the range; those with higher numbers were found
+        beside it: the curve does not come by their motions inside the range. There may be more.
+        """
+        return constant(np.cumsum(self.arrays.further))
+
+    @cached_property
     def stability(self) -> States:
         """State of each motion, "stable", "unstable" or "not decided".
 

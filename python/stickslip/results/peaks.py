@@ -161,7 +161,8 @@ def highest_of(result: Peaks, dof: str, amplitude: Float) -> Peak:
     around = slice(best - 1, best + 2)
     if not np.isfinite(amplitude[around]).all():
         return _told(result, dof, omega, top, beside_gap=True)
-    if result.arrays.jump[best : best + 2].any():
+    apart = result.arrays.jump | result.arrays.further
+    if apart[best : best + 2].any():
         return Peak(*top, at_edge=False)
     x, y = omega[around] / top[0] - 1.0, amplitude[around] / top[1] - 1.0
     before, after = np.hypot(np.diff(x), np.diff(y))
