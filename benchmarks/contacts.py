@@ -119,8 +119,8 @@ def normal_loads() -> tuple[float, float]:
     stiff = FACE["normal_stiffness"]
     load = np.zeros(6)
     load[5] = PRESS
-    first, second = stiff * rows @ np.linalg.solve(
-        model.structure.stiffness + stiff * rows.T @ rows, load
+    first, second = (
+        stiff * rows @ np.linalg.solve(model.structure.stiffness + stiff * rows.T @ rows, load)
     )
     return float(first), float(second)
 

@@ -94,6 +94,7 @@ def test_dataset(frf):
         "status": "1",
         "fold": "1",
         "jump": "1",
+        "further": "1",
         "stability": "1",
         "lower": "m",
         "upper": "m",

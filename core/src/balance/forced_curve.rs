@@ -151,7 +151,8 @@ impl Curve for ForcedCurve<'_> {
         let (_, motion) = right.split_last_mut()?;
         motion.iter_mut().for_each(|r| *r *= self.size);
         let equations = &mut self.at.as_mut()?.equations;
-        let solved = equations.solve_bordered(border, &right);
+        let (rate, omega) = (equations.frequency_rate(), equations.omega);
+        let solved = equations.solve_bordered((&rate, omega), border, &right);
         self.profile.add(&std::mem::take(&mut equations.profile));
         solved
     }

@@ -1,18 +1,22 @@
 //! Further branches of a forced curve: motions in its range that the branch from the end of the range does
 //! not come by. Folds may lie outside of the range, and closed branches are joined to nothing.
 //!
-//! At some frequencies motions are looked for by full Newton steps from starts far from those that are
-//! known. One that lies on no known branch is followed in both directions, to the ends of the range or to
-//! where it closes. What no start leads to is not found: there may be more branches.
+//! At some frequencies motions are looked for along the curve in the load through one that is known, and
+//! from the stuck response. One that lies on no known branch is followed in both directions, to the ends of
+//! the range or to where it closes. What neither leads to is not found: there may be more branches.
+//! Isolas of a vibration absorber: T. Detroux, G. Habib, L. Masset, G. Kerschen (2015), "Performance,
+//! robustness and sensitivity analysis of the nonlinear tuned vibration absorber".
 
+use super::attempts::is_bounded;
 use super::branch_sweep::branch_through;
 use super::condensed::Condensed;
-use super::far_starts::{far_starts, turned};
 use super::forced::ForcedBalance;
 use super::keep;
+use super::load_curve::joined_by_load;
+use super::settings::Resolution;
 use super::solution::{CurveEnd, Point};
 use super::unknowns::Unknowns;
-use crate::solve::{newton, norm, NewtonSettings, Outcome, System as _};
+use crate::solve::{newton, norm, NewtonSettings, Outcome};
 use crate::Error;
 use std::sync::Arc;
 
@@ -20,18 +24,12 @@ use std::sync::Arc;
 const LOOKS: usize = 9;
 /// Most further branches.
 const MOST: usize = 8;
-/// Full Newton steps from a start, …
-const STEPS: usize = 14;
-/// … the relative step at which Newton's method goes on by itself, …
-const ARRIVED: f64 = 0.1;
-/// … and the distance from a known motion at which a start leads there.
-const NEAR: f64 = 0.02;
 /// Newton's method at motions that are compared: they are not kept.
 const COMPARED: NewtonSettings = NewtonSettings { tolerance: 1e-7, max_iterations: 12 };
-/// Distance of motions that are the same.
+/// Distance from a straight line between points of a branch of motions that are on it, …
+const NEAR: f64 = 0.02;
+/// … and of motions that are the same.
 const SAME: f64 = 1e-3;
-/// The largest motion of the curve, turned by quarters of a period.
-const OF_LARGEST: [[f64; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
 
 /// Adds to the points of a curve those of its further branches; whether nobody has ended that.
 ///
@@ -46,8 +44,8 @@ pub(super) fn add_further_branches(
     let (mut begin, mut branches, mut complete) = (points.len(), 0, true);
     for look in 0..LOOKS {
         let share = look as f64 / (LOOKS - 1) as f64;
-        let omega = bounds.0 + share * (bounds.1 - bounds.0);
-        while let Some(first) = other_motion(balance, points, omega, look)? {
+        let omega = (1.0 - share) * bounds.0 + share * bounds.1;
+        while let Some(first) = other_motion(balance, points, omega)? {
             let (branch, end) = both_ways(balance, first, bounds)?;
             points.extend(branch);
             points[begin..].iter().for_each(|point| keep(kept, point));
@@ -95,89 +93,44 @@ fn other_motion(
     balance: &mut ForcedBalance<'_>,
     points: &[Arc<Point>],
     omega: f64,
-    look: usize,
 ) -> Result<Option<Point>, Error> {
-    let here = crossings(points, omega);
-    let nearest = |a: &&Arc<Point>, b: &&Arc<Point>| {
-        (a.omega - omega).abs().total_cmp(&(b.omega - omega).abs())
-    };
-    let Some(beside) = points.iter().filter(|point| point.is_solved()).min_by(nearest) else {
+    let crossed = crossings(points, omega);
+    let Some(finest) = crossed.iter().map(|(_, at)| *at).reduce(Resolution::or_finer) else {
         return Ok(None);
     };
-    let resolution = beside.resolution();
-    let (table, model) =
-        (balance.table(resolution.harmonics), balance.evaluated(resolution.samples)?);
-    let slots = table.harmonics().slots();
+    let table = balance.table(finest.harmonics);
+    let model = balance.evaluated(finest.samples)?;
     let interrupted = balance.interruption();
-    let mut equations = Condensed::new(model, &table, balance.settings.residual, false);
+    let mut equations = Condensed::of_curve(model, &table, balance.settings.residual);
     equations.watch(&interrupted);
     if equations.set_omega(omega).is_err() {
         return Ok(None);
     }
     let recast = |unknowns: &Unknowns| unknowns.recast(table.harmonics());
-    let mut known: Vec<Vec<f64>> = here.iter().map(recast).collect();
-    let largest = points.iter().filter_map(|point| point.unknowns().map(recast));
-    let largest = largest.max_by(|a, b| norm(a).total_cmp(&norm(b))).unwrap_or_default();
-    let stuck = equations.stuck_response().to_vec();
-    let nominal = known.first().unwrap_or(&stuck).clone();
-    let last: Vec<usize> = balance.model.points().iter().map(|own| own.end - 1).collect();
-    let starts = [stuck.clone()]
-        .into_iter()
-        .chain(OF_LARGEST.map(|by| turned(&largest, slots, by)))
-        .chain(far_starts([&nominal, &stuck], slots, &last, look));
-    let mut polished = false;
-    let mut found = None;
-    for start in starts {
-        let Some(mut x) = looked(&mut equations, start, &known) else { continue };
-        if newton(&mut equations, &mut x, COMPARED).outcome != Outcome::Converged {
-            continue;
-        }
-        if !polished {
-            // Interpolated motions may be farther off than others lie apart.
-            let exact = known.clone().into_iter().filter_map(|mut x| {
-                let solved = newton(&mut equations, &mut x, COMPARED).outcome;
-                (solved == Outcome::Converged).then_some(x)
-            });
-            let exact: Vec<Vec<f64>> = exact.collect();
-            known.extend(exact);
-            polished = true;
-        }
-        if known.iter().any(|other| apart(&x, other) < SAME) {
-            continue;
-        }
-        found = Some(Unknowns::new(table.harmonics().clone(), x));
-        break;
-    }
-    balance.add_profile(&equations.profile);
-    let Some(start) = found else { return Ok(None) };
-    let point = balance.solve(omega, Some(&start))?;
-    let stays = |unknowns: &Unknowns| {
-        let x = recast(unknowns);
-        known.iter().all(|other| apart(&x, other) >= SAME)
+    let solved = |equations: &mut Condensed<'_>, mut x: Vec<f64>| {
+        let found = newton(equations, &mut x, COMPARED).outcome == Outcome::Converged;
+        found.then_some(x)
     };
-    let new = point.is_solved() && point.unknowns().is_some_and(stays);
+    // Straight lines may be farther off than motions lie apart.
+    let lines: Vec<Vec<f64>> = crossed.iter().map(|(motion, _)| recast(motion)).collect();
+    let exact: Vec<Vec<f64>> =
+        lines.iter().filter_map(|x| solved(&mut equations, x.clone())).collect();
+    let known = |x: &[f64]| {
+        lines.iter().any(|other| apart(x, other) < NEAR)
+            || exact.iter().any(|other| apart(x, other) < SAME)
+    };
+    let mut starts = exact.first().map_or_else(Vec::new, |x| joined_by_load(&mut equations, x));
+    starts.push(equations.stuck_response().to_vec());
+    let found = starts.into_iter().filter(|x| !known(x)).find_map(|start| {
+        solved(&mut equations, start)
+            .filter(|x| !known(x) && is_bounded(x, equations.stuck_response()))
+    });
+    balance.add_profile(&equations.profile);
+    let Some(values) = found else { return Ok(None) };
+    let start = Unknowns::new(table.harmonics().clone(), values);
+    let point = balance.solve(omega, Some(&start))?;
+    let new = point.is_solved() && point.unknowns().is_some_and(|x| !known(&recast(x)));
     Ok(Some(point).filter(|_| new))
-}
-
-/// Where full Newton steps lead from a start that is far from any motion; nothing if they come to a
-/// known motion, or nowhere.
-fn looked(equations: &mut Condensed<'_>, start: Vec<f64>, known: &[Vec<f64>]) -> Option<Vec<f64>> {
-    let mut x = start;
-    let (mut defect, mut step) = (vec![0.0; x.len()], vec![0.0; x.len()]);
-    for _ in 0..STEPS {
-        equations.residual(&x, &mut defect);
-        if equations.interrupted() || !equations.solve(&defect, &mut step) {
-            return None;
-        }
-        x.iter_mut().zip(&step).for_each(|(x, s)| *x -= s);
-        if known.iter().any(|other| apart(&x, other) < NEAR) {
-            return None;
-        }
-        if norm(&step) < ARRIVED * norm(&x) {
-            return Some(x);
-        }
-    }
-    None
 }
 
 /// Distance of two motions, relative to the larger.
@@ -186,8 +139,8 @@ fn apart(a: &[f64], b: &[f64]) -> f64 {
     norm(&way) / norm(a).max(norm(b)).max(f64::MIN_POSITIVE)
 }
 
-/// The motions of all branches at a frequency, by straight lines between their points.
-fn crossings(points: &[Arc<Point>], omega: f64) -> Vec<Unknowns> {
+/// The motions of all branches at a frequency, by straight lines between their points, and what they resolve.
+fn crossings(points: &[Arc<Point>], omega: f64) -> Vec<(Unknowns, Resolution)> {
     let crossing = |pair: &[Arc<Point>]| {
         let [a, b] = pair else { return None };
         let (from, to) = (a.unknowns()?, b.unknowns()?);
@@ -195,7 +148,8 @@ fn crossings(points: &[Arc<Point>], omega: f64) -> Vec<Unknowns> {
         let share = if a.omega == b.omega { 0.0 } else { (omega - a.omega) / (b.omega - a.omega) };
         let values = from.recast(to.harmonics()).into_iter().zip(to.values());
         let values = values.map(|(x, y)| x + share * (y - x)).collect();
-        inside.then(|| Unknowns::new(to.harmonics().clone(), values))
+        let motion = Unknowns::new(to.harmonics().clone(), values);
+        inside.then(|| (motion, a.resolution().or_finer(b.resolution())))
     };
     points.windows(2).filter_map(crossing).collect()
 }

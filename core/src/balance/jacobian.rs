@@ -110,13 +110,18 @@ impl Condensed<'_> {
         };
     }
 
-    /// Solves the equations linearised in the displacements and the frequency, with one more equation
-    /// whose coefficients are `row`, as `right` says. The sign is that of the determinant, or 0 where no
-    /// matrix is formed.
-    pub(super) fn solve_bordered(&mut self, row: &[f64], right: &[f64]) -> Option<(Vec<f64>, f64)> {
+    /// Solves the equations linearised in the displacements and a parameter of a size, with one more
+    /// equation whose coefficients are `row`, as `right` says; `rate` is the rate of change of the residual
+    /// with the parameter, sign reversed. The sign is that of the determinant, or 0 where no matrix is
+    /// formed.
+    pub(super) fn solve_bordered(
+        &mut self,
+        (rate, size): (&[f64], f64),
+        row: &[f64],
+        right: &[f64],
+    ) -> Option<(Vec<f64>, f64)> {
         let start = std::time::Instant::now();
-        let rate = self.frequency_rate();
-        let border = Border { rate: &rate, row, omega: self.omega };
+        let border = Border { rate, row, omega: size };
         let (harmonics, loads) = (self.table.harmonics(), self.tangents());
         let (step, sign) = match &self.linear {
             Linear::Dense(receptances) => {

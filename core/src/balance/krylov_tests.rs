@@ -215,7 +215,9 @@ fn steps_with_an_unknown_frequency_are_those_of_the_bordered_matrix() {
                     .map(|i| (0.3 * i as f64).cos() / if i < x.len() { size } else { 9.0 })
                     .collect();
                 residual.push(0.1);
-                let (step, _) = equations.solve_bordered(&row, &residual).unwrap();
+                let (step, _) = equations
+                    .solve_bordered((&equations.frequency_rate(), equations.omega), &row, &residual)
+                    .unwrap();
                 assert_eq!(equations.profile.products > 0, !dense);
                 step
             })

@@ -1,9 +1,17 @@
 //! Motions of one point whose sliders are held at different places.
 
-use crate::balance::{far_starts, HeldMotion, SliderBalance};
+use crate::balance::{HeldMotion, SliderBalance};
 
 /// Corners that are tried at most.
 const CORNERS: usize = 8;
+/// Vibrations from which others are looked for: complex multiples of the curve's, …
+const MULTIPLES: [[f64; 2]; 3] = [[-3.0, 0.0], [0.0, 3.0], [0.0, -3.0]];
+/// … and of that without slip, …
+const OF_STUCK: [[f64; 2]; 2] = [[-3.0, 0.0], [0.0, 3.0]];
+/// … and the curve's with one added that opens a contact or all of them, over its largest component.
+const OPENING: [f64; 2] = [3.0, 10.0];
+/// Single contacts that are opened at a point.
+const OPENED: usize = 3;
 /// Width of the bounds, relative to the amplitude, that is none.
 pub(super) const NO_WIDTH: f64 = 1e-9;
 /// Distance of two positions, relative to their range, that is none.
@@ -63,14 +71,13 @@ impl HeldPool<'_> {
         }
     }
 
-    /// Looks for motions far from that of the curve. `survey` counts the points at which this was done.
+    /// Looks for motions far from that of the curve: from large vibrations out of phase with it, and from
+    /// those in which contacts open, one by one, all at once and in turn. `survey` counts the points at
+    /// which this was done: contacts and phases differ from one to the next.
     pub(super) fn try_starts(&mut self, survey: usize) {
         let nominal = self.motions[0].clone();
         let target = beyond(&nominal, &nominal.sliders);
-        let slots = nominal.u.len() / nominal.sliders.len().max(1);
-        let last: Vec<usize> = self.balance.last_components().collect();
-        let known = [&*nominal.u, self.balance.stuck_response()];
-        for start in far_starts(known, slots, &last, survey) {
+        for start in self.starts(&nominal, survey) {
             self.motions.extend(self.balance.look(&target, &start, &self.motions));
         }
     }
@@ -81,6 +88,40 @@ impl HeldPool<'_> {
             let target = beyond(other, &other.sliders);
             self.motions.extend(self.balance.look(&target, &other.u, &self.motions));
         }
+    }
+
+    fn starts(&self, nominal: &HeldMotion, survey: usize) -> Vec<Vec<f64>> {
+        let slots = nominal.u.len() / nominal.sliders.len().max(1);
+        let turned = |of: &[f64], [re, im]: &[f64; 2]| {
+            let mut u = of.to_vec();
+            let harmonics = u.chunks_exact_mut(slots).flat_map(|own| own[1..].chunks_exact_mut(2));
+            harmonics
+                .for_each(|x| x.copy_from_slice(&[re * x[0] - im * x[1], im * x[0] + re * x[1]]));
+            u
+        };
+        let fundamental = nominal.u.chunks_exact(slots).flat_map(|own| &own[1..3]);
+        let largest = fundamental.fold(0.0_f64, |most, x| most.max(x.abs()));
+        let (quarter, sign) = (survey % 2, if survey % 4 < 2 { 1.0 } else { -1.0 });
+        let open = |u: &mut Vec<f64>, component: usize, by: f64| {
+            u[component * slots + 1 + quarter] += sign * by * largest;
+        };
+        let components: Vec<usize> = self.balance.last_components().collect();
+        let [one, all] = OPENING;
+        let together = [1.0, -1.0].map(|next: f64| {
+            let mut u = nominal.u.clone();
+            let signs = std::iter::successors(Some(1.0), |sign| Some(sign * next));
+            components.iter().zip(signs).for_each(|(at, sign)| open(&mut u, *at, sign * all));
+            u
+        });
+        let first = survey * OPENED;
+        let singly = (first..first + OPENED.min(components.len())).map(|turn| {
+            let mut u = nominal.u.clone();
+            open(&mut u, components[turn % components.len()], one);
+            u
+        });
+        let multiples = MULTIPLES.iter().map(|by| turned(&nominal.u, by));
+        let of_stuck = OF_STUCK.iter().map(|by| turned(self.balance.stuck_response(), by));
+        multiples.chain(of_stuck).chain(together).chain(singly).collect()
     }
 
     /// Moves the sliders of a motion of the pool; those that are sent to a limit go with it.
