@@ -1,7 +1,7 @@
 """Forced response of bodies on contacts with friction, solved by pyHarm-os.
 
-The peer side of a benchmark: bodies of two or three directions each, contacts with friction between
-them or to the ground under normal forces that vary and vanish (pyHarm's penalty contact,
+The peer side of a benchmark: bodies of two or three directions each, contacts with friction
+between them or to the ground under normal forces that vary and vanish (pyHarm's penalty contact,
 ``Penalty3D``), and a sweep at equally spaced frequencies. Prints one line of JSON; everything else
 goes to the standard error.
 

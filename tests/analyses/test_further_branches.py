@@ -67,7 +67,7 @@ def test_a_branch_whose_fold_lies_outside_of_the_range_is_found() -> None:
     model = ss.Model(structure, [ss.Cubic("x", stiffness=1.0)], [ss.Force("x", 1.0)])
     whole = ss.forced_response(model, (0.3, 4.0), 9, stability=False)
     part = ss.forced_response(model, (0.3, 2.5), 9, stability=False)
-    assert whole.branch.max() == 0 and part.branch.max() == 1
+    assert (whole.branch.max(), part.branch.max()) == (0, 1)
     small = np.flatnonzero(part.branch == 1)
     assert part.omega[small[[0, -1]]] == pytest.approx([2.5, 2.5])
     # Both ends of it and the curve are the three motions at the end of the range.

@@ -186,7 +186,8 @@ impl<'a> Search<'a> {
                 break;
             }
             let (before, after) = found.split_at_mut(n + 1);
-            let jump = solution.points[n + 1].jump;
+            let next = &solution.points[n + 1];
+            let jump = next.jump || next.further;
             self.again(&solution.points[n], &mut before[n], &after[0], jump)?;
         }
         self.affordable = UNLIMITED;

@@ -54,6 +54,8 @@ class Response(Protocol):
     def converged(self) -> NDArray[np.bool_]: ...  # noqa: D102
     @property
     def folds(self) -> NDArray[np.int64]: ...  # noqa: D102
+    @property
+    def branch(self) -> NDArray[np.int64]: ...  # noqa: D102
     def coefficients(self, dof: str) -> NDArray[np.complex128]: ...  # noqa: D102
 
 
@@ -127,8 +129,8 @@ class Frf:
 
         `dof` is an observed degree of freedom, `reference` one with a force of the first harmonic;
         other forces stay in proportion to it. A structure with friction has another displacement
-        per force at every level. A curve that folds is refused: it has several values at a
-        frequency.
+        per force at every level. A curve that folds or has further branches is refused: it has
+        several values at a frequency.
         """
         forces = [f for f in response.model.forces if f.harmonic == 1 and f.dof == reference]
         amplitude = sum(force.coefficient for force in forces)
@@ -138,6 +140,11 @@ class Frf:
             raise ModelError(
                 f"frf: the curve folds {response.folds.size} times, so that it has several values "
                 "at a frequency; give the frequencies as a list"
+            )
+        if response.branch.max() > 0:
+            raise ModelError(
+                "frf: the curve has further branches, so that it has several values at a frequency; "
+                "give the frequencies as a list"
             )
         solved = response.converged
         order = np.argsort(response.omega[solved])
