@@ -12,8 +12,8 @@ Run it with the interpreter of the peer's environment::
 The file holds ``bodies`` (by name: ``mass, damping, stiffness``, matrices), ``contacts`` (each of
 ``between``, one or two bodies, ``normal``, ``tangents``, friction, stiffnesses and preload),
 ``forces`` (each of body, direction, real and imaginary part), ``omega = [first, last]``,
-``points``, ``harmonics``, ``samples`` and ``momentum``, the share of the last Jacobian that pyHarm's
-Newton method keeps. Amplitudes are given in the order of the bodies.
+``points``, ``harmonics``, ``samples`` and ``momentum``, the share of the last Jacobian that
+pyHarm's Newton method keeps. Amplitudes are given in the order of the bodies.
 
 pyHarm-os 1.2.2 leaves jax, by which this contact is evaluated, in single precision: then Newton's
 method does not reach its tolerance at any frequency. Double precision is set below.

@@ -121,10 +121,14 @@ impl ForcedBalance<'_> {
             }
             Outcome::Converged => PointStatus::Converged,
             Outcome::Singular if equations.free => PointStatus::Free,
-            Outcome::Stalled if equations.loose => PointStatus::Free,
+            Outcome::Stalled if equations.loose || equations.floats() => PointStatus::Free,
             Outcome::Stalled => PointStatus::Stalled,
             Outcome::Singular => PointStatus::Singular,
         };
+        if status == PointStatus::Free {
+            // The recovery reads slip loads at the point that is returned.
+            equations.residual(&x, &mut vec![0.0; x.len()]);
+        }
         let start = std::time::Instant::now();
         let mut point = equations.recover(&x, self.observe, status)?;
         point.samples = samples;

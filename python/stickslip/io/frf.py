@@ -143,8 +143,8 @@ class Frf:
             )
         if response.branch.max() > 0:
             raise ModelError(
-                "frf: the curve has further branches, so that it has several values at a frequency; "
-                "give the frequencies as a list"
+                "frf: the curve has further branches, so that it has several values at a "
+                "frequency; give the frequencies as a list"
             )
         solved = response.converged
         order = np.argsort(response.omega[solved])

@@ -149,7 +149,7 @@ class Arrays(PeriodicArrays):
         "*", "1", "whether the sweep has come to the point from another branch", absent=False
     )
     further: Bool = column(
-        "*", "1", "whether a further branch of the curve begins at the point", absent=_nowhere
+        "*", "1", "whether a further branch of the curve begins at the point", absent=False
     )
     stability: Code = column(
         "*", "1", "whether the motion is stable", codes=STABILITY, absent="not decided"
