@@ -38,7 +38,7 @@ impl Condensed<'_> {
     }
 
     /// Whether a body that contacts alone hold may leave them all and stay away: its vibration in free
-    /// flight solves the equations, wherever it is, and no load presses it back.
+    /// flight solves the equations, wherever it is, unless a load drives it further away; none presses it back.
     pub(super) fn floats(&mut self) -> bool {
         let slots = self.table.harmonics().slots();
         let points = self.stuck.len() / slots.max(1);
@@ -73,10 +73,14 @@ impl Condensed<'_> {
             let mut residual = vec![0.0; x.len()];
             self.residual(&x, &mut residual);
             let (sprung, loads) = (springs(&x), self.slip_load());
-            let force: Vec<f64> = sprung.iter().zip(&loads).map(|(f, q)| f - q).collect();
-            let pressed: f64 =
-                (0..points).map(|i| parts.U()[(i, points - 1)] * residual[i * slots]).sum();
-            norm(&force) < ROUNDING * norm(&sprung) && pressed.abs() < ROUNDING * far.abs()
+            // Open contacts have constant forces: none, or what the preload lacks.
+            let force = (0..x.len()).filter(|i| i % slots > 0).map(|i| sprung[i] - loads[i]);
+            let force: Vec<f64> = force.collect();
+            // The load on the motion away is that of the springs which would hold it where it is.
+            let means = sprung.iter().zip(&residual).step_by(slots);
+            let back: f64 = means.map(|(spring, residual)| spring * residual).sum();
+            norm(&force) < ROUNDING * norm(&sprung)
+                && back < ROUNDING * norm(&sprung) * norm(&self.stuck)
         })
     }
 
