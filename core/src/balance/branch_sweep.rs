@@ -14,7 +14,7 @@ use super::solution::{CurveEnd, Point, PointStatus, Solution};
 use super::stops::{stops, LONGEST};
 use super::sweep::finish;
 use super::tangent::distance;
-use crate::solve::{across, between, Advance, Branch, Continuation, Curve as _, Steps};
+use crate::solve::{across, between, Advance, Continuation, Curve as _, Steps};
 use crate::Error;
 use std::sync::Arc;
 use std::time::Instant;
@@ -34,18 +34,12 @@ pub(super) const STEPS: Steps =
 const NEAR: f64 = 0.5;
 /// Shortest step, as a share of the longest, that is refused for the bend of the curve.
 const SHORT: f64 = 1e-4;
-/// Distance of points of a curve that are the same.
-const SAME: f64 = 1e-9;
-
-/// Distance at which a branch has come back to its first point: other harmonics may have moved it.
-const CLOSED: f64 = 1e-2;
-
 /// A curve on its way.
-struct Walk<'a, 'b> {
+pub(super) struct Walk<'a, 'b> {
     balance: &'b mut ForcedBalance<'a>,
-    points: Vec<Arc<Point>>,
+    pub(super) points: Vec<Arc<Point>>,
     /// Whether it began inside the range.
-    inside: bool,
+    pub(super) inside: bool,
     /// Resonances with their bandwidths.
     stops: Vec<(f64, f64)>,
     bounds: (f64, f64),
@@ -245,17 +239,6 @@ impl Walk<'_, '_> {
         }
     }
 
-    /// The first point of the branch, if a step has come by it in the direction in which it was left.
-    fn closed(&self, curve: &mut ForcedCurve<'_>, known: &[f64], z: &[f64]) -> Option<Vec<f64>> {
-        let [first, second, _, ..] = &self.points[..] else { return None };
-        let [from, to] = [known, z].map(|z| z[z.len() - 1]);
-        let (begin, ahead) = (first.omega, (to - from) * (second.omega - first.omega) > 0.0);
-        let passes = self.inside && ahead && (begin - from) * (begin - to) <= 0.0;
-        let first = curve.point(first.unknowns.as_ref().filter(|_| passes)?, begin);
-        let (at, _) = between(curve, known, z, begin)?;
-        (distance(&at, &first) < CLOSED).then_some(at)
-    }
-
     /// Evaluations that may be made at this resolution until the next point.
     fn affordable(&self) -> usize {
         let all = EVALUATIONS[0] * self.points.len() + EVALUATIONS[1];
@@ -266,7 +249,7 @@ impl Walk<'_, '_> {
         &self.points[self.points.len() - 1]
     }
 
-    fn push(&mut self, point: Point) {
+    pub(super) fn push(&mut self, point: Point) {
         if point.is_solved() {
             self.balance.scale.include(&point);
         }
@@ -298,7 +281,7 @@ impl Walk<'_, '_> {
     }
 
     /// Displacements, forces and error of a point of the curve; nothing if the analysis is to end.
-    fn solved(
+    pub(super) fn solved(
         &mut self,
         curve: &mut ForcedCurve<'_>,
         z: &[f64],
@@ -358,37 +341,6 @@ impl Walk<'_, '_> {
         let solved = self.solved(&mut curve, &z, resolution, point.iterations);
         self.balance.add_profile(&curve.profile);
         solved
-    }
-
-    /// Adds the fold before a new point, if the frequency has turned.
-    fn add_fold(
-        &mut self,
-        curve: &mut ForcedCurve<'_>,
-        resolution: Resolution,
-        new: &Point,
-    ) -> Result<(), Error> {
-        let [.., before, last] = &self.points[..] else { return Ok(()) };
-        if last.fold || (last.omega - before.omega) * (new.omega - last.omega) >= 0.0 {
-            return Ok(());
-        }
-        let (before, last) = (Arc::clone(before), Arc::clone(last));
-        let points: Option<Vec<Vec<f64>>> = [&*before, &*last, new]
-            .into_iter()
-            .map(|point| Some(curve.point(point.unknowns()?, point.omega)))
-            .collect();
-        let Some([a, b, c]) = points.as_deref() else { return Ok(()) };
-        let Some(z) = Branch::turn(curve, a, b, c) else { return Ok(()) };
-        let Some(mut fold) = self.solved(curve, &z, resolution, 0)? else { return Ok(()) };
-        fold.fold = true;
-        let (same, before) = (distance(&z, b) < SAME, distance(&z, a) < distance(b, a));
-        if same || before {
-            self.points.pop();
-        }
-        self.push(fold);
-        if before && !same {
-            self.points.push(last);
-        }
-        Ok(())
     }
 
     /// Largest relative distance of the observed DOFs from a straight line between the last point and

@@ -5,6 +5,7 @@ mod accuracy;
 mod adaptive;
 mod attempts;
 mod branch_sweep;
+mod branch_turns;
 mod condensed;
 mod continuity;
 mod cycle_point;
