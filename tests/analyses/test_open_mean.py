@@ -94,3 +94,56 @@ def test_a_mean_that_only_rounding_moves_is_free(harmonics: int) -> None:
     assert frf.status[0] in ("free", "converged")
     if frf.status[0] == "converged":
         assert [one.code for one in frf.diagnostics].count("free-flight") == 1
+
+
+def test_a_body_that_a_static_load_drives_away_is_free() -> None:
+    """One contact with preload holds a structure of six degrees of freedom; it stalled before."""
+    modes = np.array(
+        [
+            [1.5, 5.93, 69.83, 3.38, -2.32, 31.62],
+            [-87.02, -23.59, 5.73, -61.28, 9.85, 3.18],
+            [28.36, -128.66, 92.06, -2.21, -65.1, -185.12],
+            [-32.68, -12.21, 39.12, 94.25, 269.27, -72.87],
+            [-179.71, -50.04, -21.29, 257.48, -103.03, 29.82],
+        ]
+    )
+    damping = np.array(
+        [
+            [3.23, 0.47, 0.21, -1.49, 0.19, -0.42],
+            [0.47, 1.42, -0.52, -0.4, 0.56, 1.09],
+            [0.21, -0.52, 1.57, -0.08, 0.26, -0.72],
+            [-1.49, -0.4, -0.08, 3.49, 0.01, 0.04],
+            [0.19, 0.56, 0.26, 0.01, 5.09, -0.4],
+            [-0.42, 1.09, -0.72, 0.04, -0.4, 2.31],
+        ]
+    )
+    mass = np.diag([1.886, 1.037, 1.116, 0.803, 1.465, 0.773])
+    names = ["q0", "q1", "q2", "q3", "q4", "q5"]
+    structure = ss.Structure(mass, modes.T @ modes, damping, names)
+    contact = ss.Coulomb(
+        ["q2", "q3"],
+        normal=[0, 1],
+        friction=0.328,
+        tangential_stiffness=4928.0,
+        normal_stiffness=6715.0,
+        preload=2.053,
+    )
+    loads = [
+        ("q0", 1.88, 0.71, 1),
+        ("q1", -3.8, -5.66, 1),
+        ("q2", 2.67, -0.84, 1),
+        ("q3", 4.4, 1.85, 1),
+        ("q5", 8.74, -3.3, 1),
+        ("q1", 3.25, 0.0, 0),
+        ("q2", 5.12, 0.0, 0),
+        ("q3", 1.39, 0.0, 0),
+    ]
+    forces = [
+        ss.Force(dof, abs(complex(re, im)), phase=float(np.angle(complex(re, im))), harmonic=order)
+        if order
+        else ss.Force(dof, re, harmonic=0)
+        for dof, re, im, order in loads
+    ]
+    frf = ss.forced_response(ss.Model(structure, [contact], forces), [92.72], harmonics=9)
+    assert frf.status == ("free",)
+    assert frf.counters["evaluations"] < 1000
