@@ -1,6 +1,6 @@
 //! A curve over a range of frequencies, with steps chosen to the tolerance.
 
-use super::branch_sweep::sweep_branch;
+use super::branches::sweep_branches;
 use super::condensed::Condensed;
 use super::forced::ForcedBalance;
 use super::keep;
@@ -40,7 +40,7 @@ pub fn sweep_range(mut balance: ForcedBalance<'_>, from: f64, to: f64) -> Result
     let direction = (to - from).signum();
     let longest = LONGEST * (to - from).abs();
     if !balance.model.is_monotone() {
-        return sweep_branch(balance, (from, to));
+        return sweep_branches(balance, (from, to));
     }
     let mut points = vec![Arc::new(balance.solve(from, None)?)];
     balance.scale.include(&points[0]);

@@ -1,23 +1,18 @@
-//! A curve over a range of frequencies where solutions may not be unique: followed by arclength, around
-//! its folds, with steps chosen to the tolerance.
-//!
-//! What is followed is the branch that begins at the first end of the range. The frequency may turn
-//! back on the way; the curve ends where it leaves the range, at either end.
+//! A branch of a curve over a range of frequencies where solutions may not be unique: followed by arclength,
+//! around its folds, with steps chosen to the tolerance. It ends where it leaves the range, at either end, or
+//! where it closes.
 
 use super::forced::ForcedBalance;
 use super::forced_curve::ForcedCurve;
-use super::further_branches::add_further_branches;
 use super::keep;
 use super::resolution_control::Decision;
 use super::settings::Resolution;
-use super::solution::{CurveEnd, Point, PointStatus, Solution};
+use super::solution::{CurveEnd, Point, PointStatus};
 use super::stops::{stops, LONGEST};
-use super::sweep::finish;
 use super::tangent::distance;
 use crate::solve::{across, between, Advance, Continuation, Curve as _, Steps};
 use crate::Error;
 use std::sync::Arc;
-use std::time::Instant;
 
 /// Most points of a curve, …
 const MOST: usize = 5000;
@@ -34,6 +29,7 @@ pub(super) const STEPS: Steps =
 const NEAR: f64 = 0.5;
 /// Shortest step, as a share of the longest, that is refused for the bend of the curve.
 const SHORT: f64 = 1e-4;
+
 /// A curve on its way.
 pub(super) struct Walk<'a, 'b> {
     balance: &'b mut ForcedBalance<'a>,
@@ -48,47 +44,6 @@ pub(super) struct Walk<'a, 'b> {
     raised: usize,
     /// Evaluations of the equations at the resolutions so far.
     evaluations: usize,
-}
-
-/// Follows the curve from `from` to `to` [rad/s]; from the other end where that leads nowhere.
-pub(super) fn sweep_branch(
-    mut balance: ForcedBalance<'_>,
-    (from, to): (f64, f64),
-) -> Result<Solution, Error> {
-    let start = Instant::now();
-    let (mut points, mut end) = branch(&mut balance, from, to)?;
-    if matches!(end, CurveEnd::Returned | CurveEnd::Stalled) {
-        let (mut others, other_end) = branch(&mut balance, to, from)?;
-        if other_end == CurveEnd::Range {
-            others.reverse();
-            (points, end) = (others, other_end);
-        }
-    }
-    if balance.further && matches!(end, CurveEnd::Range | CurveEnd::Returned) {
-        let complete =
-            add_further_branches(&mut balance, &mut points, (from.min(to), from.max(to)))?;
-        end = if complete { end } else { CurveEnd::Interrupted };
-    }
-    let interrupted = end == CurveEnd::Interrupted;
-    Ok(Solution { end, ..finish(balance, points, interrupted, start) })
-}
-
-/// The branch that begins at one end of a range, and how it ended.
-fn branch(
-    balance: &mut ForcedBalance<'_>,
-    from: f64,
-    to: f64,
-) -> Result<(Vec<Arc<Point>>, CurveEnd), Error> {
-    let first = balance.solve(from, None)?;
-    if !first.is_solved() {
-        let ended = first.status == PointStatus::NotComputed;
-        let end = if ended { CurveEnd::Interrupted } else { CurveEnd::Stalled };
-        return Ok((vec![Arc::new(first)], end));
-    }
-    balance.scale.include(&first);
-    let first = Arc::new(first);
-    keep(balance.kept, &first);
-    branch_through(balance, first, (from, to), (from.min(to), from.max(to)))
 }
 
 /// The branch from a point of it towards the end of a range, and how it ended.

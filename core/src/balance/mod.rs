@@ -6,6 +6,7 @@ mod adaptive;
 mod attempts;
 mod branch_sweep;
 mod branch_turns;
+mod branches;
 mod condensed;
 mod continuity;
 mod cycle_point;
