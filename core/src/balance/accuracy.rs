@@ -12,7 +12,7 @@
 
 use super::condensed::Condensed;
 use super::modal_work::{of_step, suits};
-use super::ring_newton::RingNewton;
+use super::ring::RingNewton;
 use super::solution::Point;
 use super::unknowns::Unknowns;
 use crate::contact::Residual;

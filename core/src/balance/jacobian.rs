@@ -6,8 +6,8 @@
 use super::condensed::{Condensed, Path};
 use super::krylov_newton::{KrylovNewton, Products};
 use super::linear::{Factor, Linear};
-use super::ring_newton::RingNewton;
-use super::ring_series::RingSeries;
+use super::ring::RingNewton;
+use super::ring::RingSeries;
 use super::slip_jacobian::{Answers, Border, Loads, SlipJacobian};
 use crate::contact::SlipLoad;
 use crate::model::Model;

@@ -2,41 +2,29 @@
 //! `U_k = U_k^stuck + G_k Q_k(U)` for every kept harmonic k.
 
 mod accuracy;
-mod adaptive;
 mod attempts;
-mod branch_sweep;
-mod branch_turns;
-mod branches;
 mod condensed;
-mod continuity;
-mod cycle_point;
-mod cycle_rest;
-mod cycle_start;
+mod cycle;
 mod enough;
 mod estimate;
 mod evaluation;
 mod forced;
-mod forced_curve;
 mod from_orbit;
-mod further_branches;
 mod jacobian;
 mod krylov_newton;
 #[cfg(test)]
 mod krylov_tests;
-mod limit_cycle;
 mod linear;
 mod linearised;
-mod load_curve;
 mod modal_work;
 mod neighbour;
 mod open_mean;
 mod peak;
 mod price;
+mod ring;
+mod sweep;
 
 mod resolution_control;
-mod ring_answers;
-mod ring_newton;
-mod ring_series;
 mod rough_start;
 mod sampling;
 mod scale;
@@ -46,18 +34,14 @@ mod slider_start;
 mod slip_jacobian;
 mod solution;
 mod statics;
-mod stops;
-mod sweep;
 mod tangent;
 mod unknowns;
 
-pub use adaptive::sweep_range;
-pub use cycle_start::Onset;
+pub(crate) use cycle::oscillation;
+pub use cycle::{CycleBalance, Onset};
 pub(crate) use evaluation::Evaluated;
 pub use forced::ForcedBalance;
 pub(crate) use forced::WarmStart;
-pub(crate) use limit_cycle::oscillation;
-pub use limit_cycle::CycleBalance;
 pub use linearised::{Cause, Linearised};
 pub(crate) use peak::brent;
 pub use peak::refine_peak;
@@ -69,8 +53,8 @@ pub(crate) use slider_start::{HeldMotion, SliderBalance};
 pub use solution::{AmplitudeBounds, CurveEnd, Point, PointStatus, Solution, Uniqueness};
 pub(crate) use statics::{slip_load, Level, Loading};
 pub use statics::{static_response, with_history, AtRest, RestStatus};
-pub use sweep::sweep;
 pub(crate) use sweep::{check_bracket, check_frequencies, over_frequencies};
+pub use sweep::{sweep, sweep_range};
 pub use unknowns::Unknowns;
 
 pub use crate::progress::Progress;

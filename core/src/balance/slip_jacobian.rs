@@ -12,7 +12,7 @@
 //! in them alone: often half as many unknowns, and one more where the frequency is unknown, too. The
 //! determinant is the same (Sylvester).
 
-use super::ring_answers::RingAnswers;
+use super::ring::RingAnswers;
 use crate::contact::SlipLoad;
 use crate::fourier::Harmonics;
 use crate::solve::{parity, Block, BlockFactors};

@@ -4,7 +4,7 @@
 //! which is what slip takes off it. The stuck structure carries D, so that the balance has to
 //! find q alone; it vanishes while a contact sticks.
 
-use super::loading_curve::LoadingCurve;
+use super::backbone::LoadingCurve;
 use super::point_state::Phase;
 use super::return_map::ReturnMapJacobian;
 use super::slip_element::Element;

@@ -1,8 +1,8 @@
 //! The damper curve: peak amplitude and frequency along a parameter.
 
-use super::global_peak::{PeakQuery, PeakSearch, Reached, OF_CURVE};
+use super::bounds::{bound_peak, PeakBounds};
 use super::member::Member;
-use super::peak_bounds::{bound_peak, PeakBounds};
+use super::peak::{PeakQuery, PeakSearch, Reached, OF_CURVE};
 use crate::balance::{ForcedBalance, Linearised, PointStatus, Progress, Resolution, Settings};
 use crate::fourier::Measure;
 use crate::model::{Model, Variation};

@@ -3,8 +3,8 @@
 //! What is computed of a pattern depends on nothing but the pattern and the tuned disk: neither on
 //! the patterns before it nor on the number of threads, so that numbers are the same bit by bit.
 
-use super::global_peak::{climbed, PeakQuery, Summits, OF_STUDY};
 use super::mistuned::TunedDisk;
+use super::peak::{climbed, PeakQuery, Summits, OF_STUDY};
 use crate::balance::Settings;
 use crate::Error;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -3,18 +3,13 @@
 
 mod closed;
 mod curve_stability;
-mod cycle_begin;
-mod cycle_branch;
-mod cycle_orbits;
-mod cycles;
+mod cycle;
 mod drift;
 mod fundamental_matrix;
 mod later_begin;
-mod limit_cycle;
 mod linear_path;
 mod loop_memory;
 mod multipliers;
-mod orbit_postprocess;
 mod period_map;
 mod periodic;
 mod plan;
@@ -27,19 +22,17 @@ mod rotation;
 mod segments;
 mod settings;
 mod shooting;
-mod sides;
 mod sliders;
-mod stability;
 mod start;
 mod survey;
 mod sweep;
 
 pub use closed::Orbit;
 pub use curve_stability::decide_stability;
-pub use cycle_branch::limit_cycles;
-pub use cycle_orbits::CycleOrbits;
-pub use cycles::{Change, ChangeKind, Cycle, CycleSettings, LimitCycles, Turn};
-pub use limit_cycle::OrbitCurve;
+pub use cycle::{
+    limit_cycles, Change, ChangeKind, Cycle, CycleOrbits, CycleSettings, LimitCycles, OrbitCurve,
+    Turn,
+};
 pub use period_map::{Multipliers, PeriodMap};
 pub use periodic::PeriodicOrbits;
 pub use rescue::OrbitInitialGuess;

@@ -1,0 +1,323 @@
+//! A branch of a curve over a range of frequencies where solutions may not be unique: followed by arclength,
+//! around its folds, with steps chosen to the tolerance. It ends where it leaves the range, at either end, or
+//! where it closes.
+
+use super::forced_curve::ForcedCurve;
+use super::stops::{stops, LONGEST};
+use crate::balance::forced::ForcedBalance;
+use crate::balance::keep;
+use crate::balance::resolution_control::Decision;
+use crate::balance::settings::Resolution;
+use crate::balance::solution::{CurveEnd, Point, PointStatus};
+use crate::balance::tangent::distance;
+use crate::solve::{across, between, Advance, Continuation, Curve as _, Steps};
+use crate::Error;
+use std::sync::Arc;
+
+/// Most points of a curve, …
+const MOST: usize = 5000;
+/// … and most evaluations of its equations: so many per point, and so many more for a few hard places.
+const EVALUATIONS: [usize; 2] = [100, 6000];
+/// Points after one that asked for more harmonics or samples at which no fewer are tried.
+const PATIENCE: usize = 4;
+/// Steps, relative to the motion and to the frequency. At first touch of a stop the curve bends within
+/// thousandths of the gap.
+pub(super) const STEPS: Steps =
+    Steps { first: 1e-2, shortest: 1e-7, longest: 0.15, max_iterations: 12 };
+/// A step goes at most by this share of its distance to the next resonance, or by its bandwidth: what
+/// is narrow must not be stepped over.
+const NEAR: f64 = 0.5;
+/// Shortest step, as a share of the longest, that is refused for the bend of the curve.
+const SHORT: f64 = 1e-4;
+
+/// A curve on its way.
+pub(super) struct Walk<'a, 'b> {
+    balance: &'b mut ForcedBalance<'a>,
+    pub(super) points: Vec<Arc<Point>>,
+    /// Whether it began inside the range.
+    pub(super) inside: bool,
+    /// Resonances with their bandwidths.
+    stops: Vec<(f64, f64)>,
+    bounds: (f64, f64),
+    longest: f64,
+    /// Number of points when the resolution was last raised.
+    raised: usize,
+    /// Evaluations of the equations at the resolutions so far.
+    evaluations: usize,
+}
+
+/// The branch from a point of it towards the end of a range, and how it ended.
+pub(super) fn branch_through(
+    balance: &mut ForcedBalance<'_>,
+    first: Arc<Point>,
+    (from, to): (f64, f64),
+    bounds: (f64, f64),
+) -> Result<(Vec<Arc<Point>>, CurveEnd), Error> {
+    let stops = stops(balance, &first, from, to)?;
+    let longest = LONGEST * (bounds.1 - bounds.0);
+    let inside = bounds.0 < from && from < bounds.1;
+    let points = vec![first];
+    let mut walk =
+        Walk { balance, points, inside, stops, bounds, longest, raised: 0, evaluations: 0 };
+    let end = walk.follow(from, to)?;
+    Ok((walk.points, end))
+}
+
+impl Walk<'_, '_> {
+    fn follow(&mut self, from: f64, to: f64) -> Result<CurveEnd, Error> {
+        let mut resolution = self.points[0].resolution();
+        let mut walk: Option<Continuation> = None;
+        let ask = self.balance.interruption();
+        // Each round at one resolution.
+        loop {
+            let table = self.balance.table(resolution.harmonics);
+            let model = self.balance.evaluated(resolution.samples)?;
+            let residual = self.balance.settings.residual;
+            let mut curve = ForcedCurve::new(model, &table, residual, &ask);
+            let last = &self.points[self.points.len() - 1];
+            let Some(unknowns) = &last.unknowns else { return Ok(CurveEnd::Stalled) };
+            let here = curve.point(unknowns, last.omega);
+            let ahead = match walk.take() {
+                None => Continuation::new(&mut curve, here, (to - from).signum(), STEPS),
+                Some(mut walk) => {
+                    let before = self.points.iter().rev().nth(1);
+                    if let Some((before, known)) = before.and_then(|p| Some((p, p.unknowns()?))) {
+                        let before = curve.point(known, before.omega);
+                        // Neither lies on the curve of another resolution: steps that are shorter
+                        // than the distance of the two curves would not find it.
+                        let [before, here] = [0.0, 1.0].map(|share| {
+                            let known = if share == 0.0 { &before } else { &here };
+                            curve.accept(known);
+                            across(&mut curve, &before, &here, share)
+                                .unwrap_or_else(|| known.clone())
+                        });
+                        walk.restart(&mut curve, &before, &here);
+                    }
+                    Some(walk)
+                }
+            };
+            let Some(mut ahead) = ahead else { return Ok(CurveEnd::Stalled) };
+            let change = self.stretch(&mut curve, &mut ahead, resolution, (from, to))?;
+            let profile = curve.profile;
+            self.evaluations += profile.evaluations;
+            self.balance.add_profile(&profile);
+            match change {
+                Change::Ends(end) => return Ok(end),
+                Change::Resolution(next) => resolution = next,
+            }
+            walk = Some(ahead);
+        }
+    }
+
+    /// Goes on at one resolution.
+    fn stretch(
+        &mut self,
+        curve: &mut ForcedCurve<'_>,
+        walk: &mut Continuation,
+        resolution: Resolution,
+        (from, to): (f64, f64),
+    ) -> Result<Change, Error> {
+        loop {
+            let share = ((self.last().omega - from) / (to - from)).clamp(0.0, 1.0);
+            if !self.balance.report(share) {
+                return Ok(Change::Ends(CurveEnd::Interrupted));
+            }
+            curve.affordable = self.affordable();
+            if self.points.len() >= MOST || curve.is_spent() {
+                return Ok(Change::Ends(CurveEnd::Points));
+            }
+            let before = walk.clone();
+            match walk.advance(curve) {
+                Advance::Stalled => return Ok(Change::Ends(CurveEnd::Stalled)),
+                Advance::Interrupted if curve.is_spent() => continue,
+                Advance::Interrupted => return Ok(Change::Ends(CurveEnd::Interrupted)),
+                Advance::Point => {}
+            }
+            let (known, mut z) = (before.point.clone(), walk.point.clone());
+            let omega = z[z.len() - 1];
+            let length = distance(&known, &z);
+            let cap = self.longest_step(known[known.len() - 1]);
+            let step = (omega - known[known.len() - 1]).abs();
+            if step > 1.5 * cap && length > SHORT * STEPS.longest {
+                self.step_back(curve, walk, before, cap / step);
+                continue;
+            }
+            let mut end = None;
+            if omega < self.bounds.0 || omega > self.bounds.1 {
+                let edge = if omega < self.bounds.0 { self.bounds.0 } else { self.bounds.1 };
+                end = Some(if edge == to { CurveEnd::Range } else { CurveEnd::Returned });
+                match between(curve, &known, &z, edge) {
+                    Some((at, _)) => z = at,
+                    None => return Ok(Change::Ends(CurveEnd::Stalled)),
+                }
+            }
+            if let Some(at) = self.closed(curve, &known, &z) {
+                (z, end) = (at, Some(CurveEnd::Closed));
+            }
+            let iterations = walk.iterations - before.iterations;
+            let Some(mut point) = self.solved(curve, &z, resolution, iterations)? else {
+                return Ok(Change::Ends(CurveEnd::Interrupted));
+            };
+            let mut kept = resolution;
+            while let Some(more) = self.wanted(&mut point, kept) {
+                kept = more;
+                match self.finer(&point, kept)? {
+                    Some(finer) => point = finer,
+                    None => break,
+                }
+            }
+            if end.is_none() && kept == resolution {
+                let tolerance = self.balance.settings.tolerance;
+                let error = self.line_error(&point, length).unwrap_or(0.81 * tolerance);
+                let factor = (0.9 * (tolerance / error.max(1e-12)).sqrt()).clamp(0.3, 2.0);
+                if error > 2.0 * tolerance && length > SHORT * STEPS.longest {
+                    self.step_back(curve, walk, before, factor);
+                    continue;
+                }
+                walk.limit_step((length * factor).max(SHORT * STEPS.longest));
+            }
+            self.add_fold(curve, resolution, &point)?;
+            self.push(point);
+            if let Some(end) = end {
+                return Ok(Change::Ends(end));
+            }
+            let mut next = self.balance.control.first();
+            if kept != resolution {
+                self.raised = self.points.len();
+                next = kept.or_finer(next);
+            } else if self.points.len() < self.raised + PATIENCE {
+                next = resolution.or_finer(next);
+            }
+            if next != resolution {
+                return Ok(Change::Resolution(next));
+            }
+        }
+    }
+
+    /// Evaluations that may be made at this resolution until the next point.
+    fn affordable(&self) -> usize {
+        let all = EVALUATIONS[0] * self.points.len() + EVALUATIONS[1];
+        all.saturating_sub(self.evaluations)
+    }
+
+    fn last(&self) -> &Point {
+        &self.points[self.points.len() - 1]
+    }
+
+    pub(super) fn push(&mut self, point: Point) {
+        if point.is_solved() {
+            self.balance.scale.include(&point);
+        }
+        let point = Arc::new(point);
+        keep(self.balance.kept, &point);
+        self.points.push(point);
+    }
+
+    /// Takes a step again, shorter.
+    fn step_back(
+        &self,
+        curve: &mut ForcedCurve<'_>,
+        walk: &mut Continuation,
+        before: Continuation,
+        factor: f64,
+    ) {
+        let iterations = walk.iterations;
+        let taken = distance(&before.point, &walk.point);
+        *walk = before;
+        walk.iterations = iterations;
+        walk.limit_step((factor * taken).max(STEPS.shortest));
+        curve.accept(&walk.point);
+    }
+
+    /// Longest step in frequency from here.
+    fn longest_step(&self, omega: f64) -> f64 {
+        let room = |&(at, width): &(f64, f64)| (NEAR * (at - omega).abs()).max(width);
+        self.stops.iter().map(room).fold(self.longest, f64::min).max(1e-6 * self.longest)
+    }
+
+    /// Displacements, forces and error of a point of the curve; nothing if the analysis is to end.
+    pub(super) fn solved(
+        &mut self,
+        curve: &mut ForcedCurve<'_>,
+        z: &[f64],
+        resolution: Resolution,
+        iterations: usize,
+    ) -> Result<Option<Point>, Error> {
+        let unknowns = curve.series(z);
+        let u = &z[..z.len() - 1];
+        let Some((equations, residual)) = curve.equations(z) else { return Ok(None) };
+        let mut point = equations.recover(u, self.balance.observe, PointStatus::Converged)?;
+        point.samples = resolution.samples;
+        if !self.balance.observe.is_empty() && !self.balance.estimate(equations, u, &mut point)? {
+            return Ok(None);
+        }
+        point.residual = residual;
+        point.iterations = iterations;
+        point.unknowns = Some(unknowns);
+        Ok(Some(point))
+    }
+
+    /// The resolution that a point lacks, if any.
+    fn wanted(&mut self, point: &mut Point, at: Resolution) -> Option<Resolution> {
+        if self.balance.control.is_fixed() {
+            return None;
+        }
+        match self.balance.judge(point) {
+            Decision::Enough => None,
+            Decision::More(more) => match self.balance.instead_of(more, point) {
+                // An orbit in its place might lie on another branch.
+                Some(dear) if dear.status == PointStatus::EffortLimit => {
+                    point.status = dear.status;
+                    self.balance.control.stay(at);
+                    None
+                }
+                _ => Some(more).filter(|more| *more != at),
+            },
+            Decision::Limit(limit) => {
+                point.status = limit;
+                self.balance.control.stay(at);
+                None
+            }
+        }
+    }
+
+    /// The point of the curve of another resolution on the plane across the way to a point.
+    fn finer(&mut self, point: &Point, resolution: Resolution) -> Result<Option<Point>, Error> {
+        let table = self.balance.table(resolution.harmonics);
+        let model = self.balance.evaluated(resolution.samples)?;
+        let ask = self.balance.interruption();
+        let mut curve = ForcedCurve::new(model, &table, self.balance.settings.residual, &ask);
+        let last = self.last();
+        let (Some(known), Some(here)) = (&last.unknowns, &point.unknowns) else { return Ok(None) };
+        let (before, at) = (curve.point(known, last.omega), curve.point(here, point.omega));
+        let found = across(&mut curve, &before, &at, 1.0);
+        let inside = |z: &Vec<f64>| (self.bounds.0..=self.bounds.1).contains(&z[z.len() - 1]);
+        let Some(z) = found.filter(inside) else { return Ok(None) };
+        let solved = self.solved(&mut curve, &z, resolution, point.iterations);
+        self.balance.add_profile(&curve.profile);
+        solved
+    }
+
+    /// Largest relative distance of the observed DOFs from a straight line between the last point and
+    /// `new`, from the curvature through the last three points along the curve.
+    fn line_error(&self, new: &Point, step: f64) -> Option<f64> {
+        let [.., before, last] = &self.points[..] else { return None };
+        let earlier = {
+            let table_of = |p: &Point| p.unknowns.clone();
+            let (a, b) = (table_of(before)?, table_of(last)?);
+            let mut from = a.recast(&b.harmonics);
+            from.push(before.omega);
+            let mut to = b.values;
+            to.push(last.omega);
+            distance(&from, &to)
+        };
+        let steps = [earlier.max(f64::MIN_POSITIVE), step];
+        Some(self.balance.scale.of_line([before, last, new], steps))
+    }
+}
+
+/// What ends a stretch.
+enum Change {
+    Resolution(Resolution),
+    Ends(CurveEnd),
+}

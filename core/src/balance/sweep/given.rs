@@ -1,0 +1,153 @@
+//! A curve over given frequencies.
+
+use crate::balance::forced::ForcedBalance;
+use crate::balance::solution::{CurveEnd, Point, PointStatus, Solution};
+use crate::balance::unknowns::Unknowns;
+use crate::balance::{keep, Kept};
+use crate::timing::Profile;
+use crate::Error;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// Solves at the frequencies `omega` [rad/s] in the order given, each from an extrapolation of
+/// the points before it.
+///
+/// # Errors
+/// A frequency that is not positive, or one at which the loads excite an undamped resonance.
+pub fn sweep(balance: ForcedBalance<'_>, omega: &[f64]) -> Result<Solution, Error> {
+    sweep_with(balance, omega, ForcedBalance::solve)
+}
+
+/// A sweep whose points `solve` finds, from a frequency and a start.
+pub(crate) fn sweep_with<'a>(
+    mut balance: ForcedBalance<'a>,
+    omega: &[f64],
+    mut solve: impl FnMut(&mut ForcedBalance<'a>, f64, Option<&Unknowns>) -> Result<Point, Error>,
+) -> Result<Solution, Error> {
+    let start = Instant::now();
+    let kept = balance.kept;
+    let (mut points, interrupted) = over_frequencies(
+        &mut balance,
+        omega,
+        kept,
+        ForcedBalance::report,
+        |balance, points, frequency| {
+            let guess = predict(points, frequency);
+            let mut point = solve(balance, frequency, guess.as_ref())?;
+            if let Some(last) = points.last().filter(|_| !balance.model.is_monotone()) {
+                balance.stay_on_branch(last, guess.as_ref(), &mut point)?;
+            }
+            Ok(Some(point).filter(|point| point.status != PointStatus::NotComputed))
+        },
+    )?;
+    if points.is_empty() {
+        points.extend(omega.first().map(|&first| Arc::new(balance.not_computed(first))));
+    }
+    Ok(finish(balance, points, interrupted, start))
+}
+
+/// Points at the frequencies `omega` [rad/s] in the order given, each found from those before it by
+/// `find`, and whether the analysis was ended: `report` says so before a point, nothing found says so
+/// at it.
+pub(crate) fn over_frequencies<A, P>(
+    analysis: &mut A,
+    omega: &[f64],
+    kept: Option<&Kept<P>>,
+    report: impl Fn(&mut A, f64) -> bool,
+    mut find: impl FnMut(&mut A, &[Arc<P>], f64) -> Result<Option<P>, Error>,
+) -> Result<(Vec<Arc<P>>, bool), Error> {
+    check_frequencies(omega)?;
+    let mut points: Vec<Arc<P>> = Vec::new();
+    for (index, &frequency) in omega.iter().enumerate() {
+        if !report(analysis, index as f64 / omega.len() as f64) {
+            return Ok((points, true));
+        }
+        let Some(point) = find(analysis, &points, frequency)? else { return Ok((points, true)) };
+        let point = Arc::new(point);
+        keep(kept, &point);
+        points.push(point);
+    }
+    Ok((points, false))
+}
+
+/// Checks all frequencies of a sweep.
+pub(crate) fn check_frequencies(omega: &[f64]) -> Result<(), Error> {
+    let check = |(index, &one)| Error::check_frequency(&format!("omega[{index}]"), one);
+    omega.iter().enumerate().try_for_each(check)
+}
+
+/// Refuses a bracket of a peak that is not ordered.
+pub(crate) fn check_bracket([low, guess, high]: [f64; 3]) -> Result<(), Error> {
+    Error::check_frequency("peak: lower bound", low)?;
+    Error::check_frequency("peak: upper bound", high)?;
+    if low <= guess && guess <= high {
+        return Ok(());
+    }
+    Err(Error::value("peak: guess", guess, "must lie between its bounds"))
+}
+
+pub(super) fn finish(
+    balance: ForcedBalance<'_>,
+    points: Vec<Arc<Point>>,
+    interrupted: bool,
+    start: Instant,
+) -> Solution {
+    Solution {
+        points,
+        half_wave: balance.half_wave(),
+        interrupted,
+        end: if interrupted { CurveEnd::Interrupted } else { CurveEnd::Range },
+        profile: Profile { total: start.elapsed(), ..balance.profile },
+    }
+}
+
+/// Highest degree of an extrapolation.
+const HIGHEST_DEGREE: usize = 3;
+/// Longest way of an extrapolation by a straight line and of one by a parabola or cubic, in steps
+/// like the last one: far beyond, nothing is predicted.
+const REACH: [f64; 2] = [3.0, 1.5];
+
+/// Polynomial extrapolation from the last points that converged, of the degree that would have
+/// predicted the last one best.
+fn predict(points: &[Arc<Point>], omega: f64) -> Option<Unknowns> {
+    let usable = |point: &&Arc<Point>| point.is_solved();
+    let last = points.last().filter(usable)?.unknowns.as_ref()?;
+    let known: Vec<(f64, Vec<f64>)> = points
+        .iter()
+        .rev()
+        .take(HIGHEST_DEGREE + 2)
+        .take_while(usable)
+        .map_while(|p| Some((p.omega, p.unknowns.as_ref()?.recast(&last.harmonics))))
+        .collect();
+    let ratio = known
+        .get(1)
+        .map_or(f64::NAN, |before| ((omega - known[0].0) / (known[0].0 - before.0)).abs());
+    // On a repeated frequency there is no line either.
+    if !ratio.is_finite() || ratio > REACH[0] {
+        return Some(last.clone());
+    }
+    let mut predicted = extrapolate(&known[..2], omega);
+    if ratio <= REACH[1] {
+        let mut least = f64::INFINITY;
+        for degree in 1..=HIGHEST_DEGREE.min(known.len().saturating_sub(2)) {
+            let hindsight = extrapolate(&known[1..degree + 2], known[0].0);
+            let missed = hindsight.iter().zip(&known[0].1).map(|(a, b)| (a - b).powi(2)).sum();
+            let candidate = extrapolate(&known[..=degree], omega);
+            if missed < least && candidate.iter().all(|x| x.is_finite()) {
+                (least, predicted) = (missed, candidate);
+            }
+        }
+    }
+    Some(Unknowns { harmonics: last.harmonics.clone(), values: predicted })
+}
+
+/// The polynomial through all of `known` at another frequency (Lagrange).
+fn extrapolate(known: &[(f64, Vec<f64>)], omega: f64) -> Vec<f64> {
+    let mut values = vec![0.0; known.first().map_or(0, |(_, values)| values.len())];
+    for (at, (own, part)) in known.iter().enumerate() {
+        let others = known.iter().enumerate().filter(|(other, _)| *other != at);
+        let weight: f64 = others.map(|(_, (w, _))| (omega - w) / (own - w)).product();
+        values.iter_mut().zip(part).for_each(|(x, p)| *x += weight * p);
+    }
+    values
+}

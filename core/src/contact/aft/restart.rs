@@ -1,0 +1,81 @@
+//! How a round of a march begins, from what the round before has made of the state.
+//!
+//! A slider that several parts of the period push in turn comes to rest like alternating projections:
+//! geometrically, and slowly where the pushes are nearly opposite. A round is a map of the state with
+//! the derivative P; `z + (1 − P)⁻¹ (z' − z)` is where the linearised map would end.
+
+use faer::linalg::solvers::DenseSolveCore as _;
+use faer::Mat;
+
+/// Largest entry of `(1 − P)⁻¹`: beyond, a push leaves the slider free to lie anywhere on a line.
+const FREE: f64 = 500.0;
+
+/// How a round begins.
+#[derive(Debug, Clone)]
+pub(super) enum Restart {
+    /// Where the round before has ended, mirrored under half-wave symmetry.
+    GoesOn,
+    /// At the mean of that and of where the round before has begun.
+    Mean,
+    /// At the fixed point of the linearised round, with `(1 − P)⁻¹`.
+    FixedPoint(Mat<f64>),
+}
+
+impl Restart {
+    /// At the fixed point of a round with a derivative, if it has one.
+    pub(super) fn at_fixed_point(lap: &Mat<f64>) -> Option<Self> {
+        let size = lap.nrows();
+        let inverse = (Mat::<f64>::identity(size, size) - lap).partial_piv_lu().inverse();
+        let bounded = (0..size).all(|j| inverse.col(j).iter().all(|a| a.abs() <= FREE));
+        bounded.then_some(Self::FixedPoint(inverse))
+    }
+
+    /// Turns what a round ends with, number of state by number of state, into what the next one begins
+    /// with; `before` is what it has begun with itself.
+    pub(super) fn apply(&self, ended: &mut [f64], before: &[f64]) {
+        match self {
+            Self::GoesOn => {}
+            Self::Mean => {
+                ended.iter_mut().zip(before).for_each(|(z, before)| *z = 0.5 * (*z + before));
+            }
+            Self::FixedPoint(inverse) => {
+                let width = ended.len() / inverse.nrows().max(1);
+                let change: Vec<f64> = ended.iter().zip(before).map(|(z, b)| z - b).collect();
+                ended.copy_from_slice(before);
+                for (i, row) in ended.chunks_exact_mut(width).enumerate() {
+                    for (j, change) in change.chunks_exact(width).enumerate() {
+                        let by = inverse[(i, j)];
+                        row.iter_mut().zip(change).for_each(|(z, change)| *z += by * change);
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::super::samples::Samples;
+    use crate::contact::{Aft, Closure, Coulomb, Motion, Residual};
+    use crate::fourier::{Harmonics, SampleTable};
+
+    /// A motion to and fro pushes the slider sideways at either end, by less and less: in the end it
+    /// is as far from both as its spring reaches.
+    #[test]
+    fn pushes_in_turn_come_to_rest_in_a_few_rounds() {
+        let half = 0.995_f64;
+        let table = SampleTable::new(Harmonics::new(1, false));
+        let displacement = [0.0, half, 0.0, -0.5, 0.0, 0.0];
+        let residual = Residual::FromRest;
+        let motion = Motion { table: &table, displacement: &displacement, residual };
+        let law = Coulomb::new(2, 1.0, 1.0, None, Closure::Preload(1.0)).unwrap();
+        let aft = Aft::new(Box::new(law), 128).unwrap();
+        let samples = Samples::of(motion, 128);
+        let round = aft.march(&samples, &aft.begin(motion), false);
+        // Marched from period to period it takes some 700.
+        assert!(round.restarts.len() < 20, "{}", round.restarts.len());
+        let sideways = round.state[1];
+        assert!((sideways + (1.0 - half * half).sqrt()).abs() < 1e-10, "{sideways}");
+    }
+}

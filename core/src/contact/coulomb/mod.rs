@@ -1,0 +1,21 @@
+//! Coulomb friction under a normal load that varies, in a line and in a plane, with separation.
+
+mod circle;
+mod collocation;
+mod constant;
+mod cycle;
+mod drive;
+mod dual;
+mod element;
+mod grid;
+mod harmonics;
+mod law;
+mod panel;
+mod period;
+mod plane;
+mod play;
+mod slip;
+mod step;
+mod variation;
+
+pub use law::{Closure, Coulomb};

@@ -1,0 +1,119 @@
+//! A straight step of the elastic Coulomb contact.
+//!
+//! One step of the return map takes the displacements along a straight line and is exact there. The
+//! slider lets go where |t| = μN, a quadratic equation; from there on the traction turns towards the
+//! line of motion, `tan(φ/2) ∝ exp(−∫ k_t |du|/(μN))` with φ the angle between the two. So the only
+//! error of a sampled evaluation is that of the straight lines, of second order in their length.
+
+use super::dual::Real;
+use super::law::{squared, Coulomb};
+
+/// Distance from the cone, relative to it, that is none.
+const ON_CONE: f64 = 1e-12;
+/// Least share of an angle that is told from none.
+const FADED: f64 = 1e-100;
+
+/// How a step went.
+pub(super) struct Passage<T> {
+    pub(super) traction: [T; 2],
+    /// Shares of the step in which the contact is open, and slips.
+    pub(super) open: f64,
+    pub(super) slipping: f64,
+}
+
+impl Coulomb {
+    /// Takes the traction along a straight step: see the head of this file.
+    pub(super) fn step<T: Real>(
+        &self,
+        traction: [T; 2],
+        du: [T; 2],
+        before: T,
+        after: T,
+    ) -> Passage<T> {
+        let (mu, k) = (T::from(self.friction), T::from(self.tangential_stiffness));
+        let zero = T::from(0.0);
+        if after.value() <= 0.0 {
+            let closed = before.value().max(0.0) / (before.value() - after.value());
+            let open = if closed.is_finite() { 1.0 - closed } else { 1.0 };
+            return Passage { traction: [zero; 2], open, slipping: 0.0 };
+        }
+        let stuck =
+            |start: [T; 2], share: T| [start[0] + k * du[0] * share, start[1] + k * du[1] * share];
+        let limit = mu * after;
+        if before.value() <= 0.0 {
+            // It closes within the step. The slider has followed until then: the contact sticks as
+            // long as |k_t u'| < μ k_n v', or slips along u'.
+            let closed = after / (after - before);
+            let trial = stuck([zero; 2], closed);
+            let size = squared(trial);
+            let open = 1.0 - closed.value();
+            if size.value() <= limit.value().powi(2) {
+                return Passage { traction: trial, open, slipping: 0.0 };
+            }
+            let by = limit / size.sqrt();
+            let slipping = closed.value();
+            return Passage { traction: [by * trial[0], by * trial[1]], open, slipping };
+        }
+        let trial = stuck(traction, T::from(1.0));
+        // The distance from the cone is convex along the line: outside at its end alone.
+        if squared(trial).value() <= limit.value().powi(2) {
+            return Passage { traction: trial, open: 0.0, slipping: 0.0 };
+        }
+        let at_start = mu * before;
+        let growth = mu * (after - before);
+        let rate = [k * du[0], k * du[1]];
+        let c = squared(traction) - at_start * at_start;
+        let b = traction[0] * rate[0] + traction[1] * rate[1] - at_start * growth;
+        let a = squared(rate) - growth * growth;
+        let on_cone = c.value() >= -ON_CONE * at_start.value().powi(2);
+        let stick = if on_cone && b.value() >= 0.0 {
+            zero
+        } else {
+            let c = if on_cone { zero } else { c };
+            let root = (b * b - a * c).sqrt();
+            if b.value() > 0.0 {
+                -c / (b + root)
+            } else {
+                (root - b) / a
+            }
+        };
+        // Of a step of the size of rounding the root is anywhere.
+        let stick = match stick.value() {
+            late if late >= 1.0 => T::from(1.0),
+            inside if inside > 0.0 => stick,
+            _ => zero,
+        };
+        let share = stick.value();
+        let from = stuck(traction, stick);
+        let size = squared(from);
+        let way = squared(du);
+        let rest = T::from(1.0) - stick;
+        let turned = if way.value() == 0.0 || size.value() == 0.0 {
+            let by = if size.value() > 0.0 { limit / size.sqrt() } else { zero };
+            [by * from[0], by * from[1]]
+        } else {
+            let (way, size) = (way.sqrt(), size.sqrt());
+            let along = [du[0] / way, du[1] / way];
+            let cos = (from[0] * along[0] + from[1] * along[1]) / size;
+            let sin = (from[1] * along[0] - from[0] * along[1]) / size;
+            let begun = before + stick * (after - before);
+            // ∫ ds/N along the rest of the line.
+            let inverse = ((after - begun) / begun).log_ratio() / begun;
+            let fade = (-(k * way * rest * inverse / mu)).exp();
+            // A traction straight against the motion stays there, however small this becomes.
+            let fade = if fade.value() > FADED { fade } else { T::from(FADED) };
+            // The half angle φ/2 as a vector, without loss where φ is near 0 or π.
+            let (x, y) = if cos.value() >= 0.0 {
+                (T::from(1.0) + cos, sin * fade)
+            } else if sin.value() >= 0.0 {
+                (sin, (T::from(1.0) - cos) * fade)
+            } else {
+                (-sin, (cos - T::from(1.0)) * fade)
+            };
+            let norm = x * x + y * y;
+            let (cos, sin) = ((x * x - y * y) / norm, T::from(2.0) * x * y / norm);
+            [limit * (cos * along[0] - sin * along[1]), limit * (cos * along[1] + sin * along[0])]
+        };
+        Passage { traction: turned, open: 0.0, slipping: 1.0 - share }
+    }
+}

@@ -1,0 +1,52 @@
+//! Solved points with their slopes, and the starts they give.
+
+use super::interpolant::Knot;
+use crate::balance::Unknowns;
+
+/// A solved point with its slopes.
+#[derive(Debug, Clone)]
+pub(crate) struct Sample {
+    /// Frequency [rad/s].
+    pub(crate) at: f64,
+    /// Height and slope of every DOF looked at.
+    pub(crate) knots: Vec<Knot>,
+    pub(crate) unknowns: Unknowns,
+    /// Derivative of the unknowns in frequency.
+    pub(super) rate: Vec<f64>,
+    /// Which points slip.
+    pub(super) slips: Vec<bool>,
+}
+
+impl Sample {
+    /// Whether no point slips.
+    pub(super) fn sticks(&self) -> bool {
+        !self.slips.contains(&true)
+    }
+
+    fn extrapolated(&self, omega: f64) -> Unknowns {
+        let step = omega - self.at;
+        let values = self.unknowns.values().iter().zip(&self.rate).map(|(x, r)| x + step * r);
+        Unknowns::new(self.unknowns.harmonics().clone(), values.collect())
+    }
+
+    fn interpolated(&self, right: &Self, omega: f64) -> Unknowns {
+        let width = right.at - self.at;
+        let t = (omega - self.at) / width;
+        let (rise, fall) = (t * t * (3.0 - 2.0 * t), t * (1.0 - t));
+        let ends = self.unknowns.values().iter().zip(right.unknowns.values());
+        let values = ends.zip(self.rate.iter().zip(&right.rate)).map(|((x, y), (dx, dy))| {
+            x + rise * (y - x) + width * fall * ((1.0 - t) * dx - t * dy)
+        });
+        Unknowns::new(self.unknowns.harmonics().clone(), values.collect())
+    }
+}
+
+/// A start from samples around a frequency: their cubic, or the tangent of the nearest.
+pub(crate) fn predicted(samples: &[Sample], omega: f64) -> Option<Unknowns> {
+    let after = samples.partition_point(|sample| sample.at < omega);
+    match (after.checked_sub(1).map(|i| &samples[i]), samples.get(after)) {
+        (Some(left), Some(right)) => Some(left.interpolated(right, omega)),
+        (Some(one), None) | (None, Some(one)) => Some(one.extrapolated(omega)),
+        (None, None) => None,
+    }
+}
