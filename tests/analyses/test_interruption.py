@@ -81,6 +81,7 @@ def test_interruption_before_the_first_point():
         dissipation=np.full((n, 1), np.nan),
         fold=np.zeros(n, np.bool_),
         jump=np.zeros(n, np.bool_),
+        further=np.zeros(n, np.bool_),
         stability=np.full(n, 2, np.uint8),
         lower=np.full((n, 1), np.nan),
         upper=np.full((n, 1), np.nan),

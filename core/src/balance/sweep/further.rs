@@ -20,8 +20,11 @@ use crate::solve::{newton, norm, NewtonSettings, Outcome};
 use crate::Error;
 use std::sync::Arc;
 
-/// Frequencies at which other motions are looked for, the ends of the range among them.
-const LOOKS: usize = 9;
+/// Eighths of the range at which other motions are looked for, in this order, as long as that takes no more
+/// evaluations than the curve, …
+const LOOKS: [u8; 9] = [0, 8, 4, 2, 6, 1, 3, 5, 7];
+/// … or this number over that of the unknowns.
+const CHEAP: usize = 30_000;
 /// Most further branches.
 const MOST: usize = 8;
 /// Newton's method at motions that are compared: they are not kept.
@@ -40,12 +43,22 @@ pub(super) fn add_further_branches(
     points: &mut Vec<Arc<Point>>,
     bounds: (f64, f64),
 ) -> Result<bool, Error> {
+    // Of many contacts a single look would cost more than the curve.
+    if balance.profile.products > 0 {
+        return Ok(true);
+    }
     let kept = balance.kept.take();
     let (mut begin, mut branches, mut complete) = (points.len(), 0, true);
-    for look in 0..LOOKS {
-        let share = look as f64 / (LOOKS - 1) as f64;
+    let own = points.last().and_then(|last| last.unknowns()).map_or(1, |x| x.values().len());
+    let mut affordable = balance.profile.evaluations.max(CHEAP / own.max(1));
+    for look in LOOKS {
+        let share = f64::from(look) / 8.0;
         let omega = (1.0 - share) * bounds.0 + share * bounds.1;
-        while let Some(first) = other_motion(balance, points, omega)? {
+        loop {
+            let before = balance.profile.evaluations;
+            let found = other_motion(balance, points, omega, affordable)?;
+            affordable = affordable.saturating_sub(balance.profile.evaluations - before);
+            let Some(first) = found else { break };
             let (branch, end) = both_ways(balance, first, bounds)?;
             points.extend(branch);
             points[begin..].iter().for_each(|point| keep(kept, point));
@@ -57,6 +70,9 @@ pub(super) fn add_further_branches(
         }
         if !balance.report(1.0) {
             return Ok(false);
+        }
+        if affordable == 0 {
+            break;
         }
     }
     balance.kept = kept;
@@ -93,6 +109,7 @@ fn other_motion(
     balance: &mut ForcedBalance<'_>,
     points: &[Arc<Point>],
     omega: f64,
+    affordable: usize,
 ) -> Result<Option<Point>, Error> {
     let crossed = crossings(points, omega);
     let Some(finest) = crossed.iter().map(|(_, at)| *at).reduce(Resolution::or_finer) else {
@@ -119,7 +136,8 @@ fn other_motion(
         lines.iter().any(|other| apart(x, other) < NEAR)
             || exact.iter().any(|other| apart(x, other) < SAME)
     };
-    let mut starts = exact.first().map_or_else(Vec::new, |x| joined_by_load(&mut equations, x));
+    let mut starts =
+        exact.first().map_or_else(Vec::new, |x| joined_by_load(&mut equations, x, affordable));
     starts.push(equations.stuck_response().to_vec());
     let found = starts.into_iter().filter(|x| !known(x)).find_map(|start| {
         solved(&mut equations, start)

@@ -21,8 +21,13 @@ pub(super) struct LoadCurve<'b, 'a> {
     size: f64,
 }
 
-/// The motions at the load as it is that the curve through one of them comes by, in both directions.
-pub(super) fn joined_by_load(equations: &mut Condensed<'_>, motion: &[f64]) -> Vec<Vec<f64>> {
+/// The motions at the load as it is that the curve through one of them comes by, in both directions, as far
+/// as so many evaluations lead.
+pub(super) fn joined_by_load(
+    equations: &mut Condensed<'_>,
+    motion: &[f64],
+    affordable: usize,
+) -> Vec<Vec<f64>> {
     let mut found = Vec::new();
     let mut curve = LoadCurve { equations, at: Default::default(), size: 1.0 };
     for sign in [1.0, -1.0] {
@@ -43,7 +48,8 @@ pub(super) fn joined_by_load(equations: &mut Condensed<'_>, motion: &[f64]) -> V
                 }));
                 curve.accept(&walk.point);
             }
-            if !(FACTORS[0]..FACTORS[1]).contains(&to) {
+            let dear = curve.equations.profile.evaluations > affordable;
+            if dear || !(FACTORS[0]..FACTORS[1]).contains(&to) {
                 break;
             }
         }
