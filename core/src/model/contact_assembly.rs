@@ -21,8 +21,8 @@ impl ContactAssembly {
     ) -> Result<Self, Error> {
         let contacts: Vec<_> = contacts.collect();
         let total: usize = contacts.iter().map(|(law, _)| law.displacements()).sum();
-        let next = contacts.iter().any(|(_, parts)| parts.len() > 1);
-        let mut rows = [Mat::zeros(total, dofs), Mat::zeros(total, if next { dofs } else { 0 })];
+        let whole = contacts.first().is_some_and(|(_, parts)| parts.len() == 1);
+        let mut rows = [Mat::zeros(total, dofs), Mat::zeros(total, if whole { 0 } else { dofs })];
         let mut stiffness = Mat::zeros(total, total);
         let (mut laws, mut points, mut first) = (Vec::new(), Vec::new(), 0);
         for (index, (law, parts)) in contacts.into_iter().enumerate() {
