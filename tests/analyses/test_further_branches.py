@@ -68,6 +68,7 @@ def test_a_branch_whose_fold_lies_outside_of_the_range_is_found() -> None:
     whole = ss.forced_response(model, (0.3, 4.0), 9, stability=False)
     part = ss.forced_response(model, (0.3, 2.5), 9, stability=False)
     assert (whole.branch.max(), part.branch.max()) == (0, 1)
+    assert part.peak("x").at_edge
     small = np.flatnonzero(part.branch == 1)
     assert part.omega[small[[0, -1]]] == pytest.approx([2.5, 2.5])
     # Both ends of it and the curve are the three motions at the end of the range.

@@ -8,7 +8,8 @@
 //!
 //! A tangent foresees neither that contacts begin to slip, or cease to, nor that the slip of a nearly
 //! rigid contact comes to other parts of the period. Where the first step leaves the motion of a contact
-//! unexplained, a second one follows, with the tangent there, and the larger change counts.
+//! unexplained, a second one follows, with the tangent there, and the larger change counts. Along a curve what it
+//! adds may be known from a point beside (`neighbour.rs`).
 
 use super::condensed::Condensed;
 use super::modal_work::{of_step, suits};
@@ -57,7 +58,7 @@ const UNEXPLAINED: f64 = 0.3;
 const TRUSTED: f64 = 2.0;
 
 /// The extended balance of a solution. It follows from the model and the solution and not from the
-/// way to it: all methods and starts estimate alike.
+/// way to it: at a frequency by itself all methods and starts estimate alike.
 pub(super) struct Extension {
     /// Its highest harmonic.
     pub(super) highest: usize,

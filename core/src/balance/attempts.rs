@@ -125,7 +125,7 @@ impl ForcedBalance<'_> {
             Outcome::Stalled => PointStatus::Stalled,
             Outcome::Singular => PointStatus::Singular,
         };
-        if status == PointStatus::Free {
+        if status != PointStatus::Converged {
             // The recovery reads slip loads at the point that is returned.
             equations.residual(&x, &mut vec![0.0; x.len()]);
         }

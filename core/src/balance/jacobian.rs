@@ -1,13 +1,11 @@
 //! The condensed equations as a system for Newton's method and homotopy.
 //!
-//! The Newton direction is found from the slip loads that depend on the motion, see
-//! [`SlipJacobian`].
+//! The Newton direction is found from the slip loads that depend on the motion: [`SlipJacobian`].
 
 use super::condensed::{Condensed, Path};
 use super::krylov_newton::{KrylovNewton, Products};
 use super::linear::{Factor, Linear};
-use super::ring::RingNewton;
-use super::ring::RingSeries;
+use super::ring::{RingNewton, RingSeries};
 use super::slip_jacobian::{Answers, Border, Loads, SlipJacobian};
 use crate::contact::SlipLoad;
 use crate::model::Model;
@@ -48,7 +46,6 @@ impl Condensed<'_> {
             self.loads = loads;
             self.factor = None;
             let slots = self.table.harmonics().slots();
-            self.moved_on = false;
             self.sizes = sizes(&self.model, slots, &self.slip_load(), x);
         } else {
             self.values = loads;

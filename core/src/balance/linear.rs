@@ -3,8 +3,7 @@
 
 use super::krylov_newton::KrylovNewton;
 use super::modal_work::suits;
-use super::ring::RingAnswers;
-use super::ring::RingNewton;
+use super::ring::{RingAnswers, RingNewton};
 use super::slip_jacobian::SlipJacobian;
 use super::unknowns::{gather, scatter};
 use crate::fourier::{Harmonics, SampleTable};

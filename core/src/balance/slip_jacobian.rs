@@ -15,7 +15,7 @@
 use super::ring::RingAnswers;
 use crate::contact::SlipLoad;
 use crate::fourier::Harmonics;
-use crate::solve::{parity, Block, BlockFactors};
+use crate::solve::parity;
 use crate::structure::Receptance;
 use faer::linalg::solvers::{PartialPivLu, SolveCore as _};
 use faer::{Conj, Mat};
@@ -36,73 +36,8 @@ struct Yielding {
 pub(super) struct SlipJacobian {
     yielding: Vec<Yielding>,
     slots: usize,
-    factors: Factors,
-}
-
-/// The matrix, row by row.
-enum Matrix {
-    Few(Block),
-    /// The transposed one, whose columns are its rows.
-    Many(Mat<f64>),
-}
-
-/// Its factors.
-enum Factors {
-    Few(BlockFactors),
-    Many(PartialPivLu<f64>),
-}
-
-/// Unknowns for which a general library takes longer to get started than to factorise.
-const FEW: usize = 48;
-
-impl Matrix {
-    fn identity(size: usize) -> Self {
-        if size <= FEW {
-            Self::Few(Block::identity(size))
-        } else {
-            Self::Many(Mat::identity(size, size))
-        }
-    }
-
-    fn row_mut(&mut self, i: usize) -> &mut [f64] {
-        match self {
-            Self::Few(block) => block.row_mut(i),
-            Self::Many(matrix) => {
-                matrix.col_mut(i).try_as_col_major_mut().map_or(&mut [], |row| row.as_slice_mut())
-            }
-        }
-    }
-
-    fn factorise(self) -> Factors {
-        match self {
-            Self::Few(block) => Factors::Few(BlockFactors::new(block)),
-            Self::Many(matrix) => Factors::Many(matrix.partial_piv_lu()),
-        }
-    }
-}
-
-impl Factors {
-    fn solve(&self, x: &mut [f64]) {
-        match self {
-            Self::Few(factors) => factors.solve_vector(x),
-            Self::Many(factors) => {
-                let x = faer::MatMut::from_column_major_slice_mut(x, x.len(), 1);
-                factors.solve_transpose_in_place_with_conj(Conj::No, x);
-            }
-        }
-    }
-
-    /// Sign of the determinant.
-    fn sign(&self) -> f64 {
-        match self {
-            Self::Few(factors) => factors.sign(),
-            Self::Many(factors) => {
-                let pivots = factors.U().diagonal().column_vector();
-                let signs = pivots.iter().map(|pivot| pivot.signum());
-                signs.product::<f64>() * parity(factors.P().arrays().0)
-            }
-        }
-    }
+    /// Of the transposed matrix, whose columns are its rows.
+    factors: PartialPivLu<f64>,
 }
 
 /// What borders the equations where the frequency is unknown.
@@ -162,11 +97,14 @@ impl SlipJacobian {
         let (yielding, slots) = (of.yielding(), of.slots);
         let size = yielding.len() * slots;
         let total = size + usize::from(border.is_some());
-        let mut matrix = Matrix::identity(total);
+        let mut transposed = Mat::<f64>::identity(total, total);
         for (r, one) in yielding.iter().enumerate() {
             let points = of.points[one.contact].clone();
             for (a, row) in of.rows(one.contact, one.local).enumerate() {
-                let out = matrix.row_mut(r * slots + a);
+                let Some(out) = transposed.col_mut(r * slots + a).try_as_col_major_mut() else {
+                    continue;
+                };
+                let out = out.as_slice_mut();
                 for (other, out) in yielding.iter().zip(out.chunks_exact_mut(slots)) {
                     let factor = -other.scale / one.scale;
                     for (point, row) in points.clone().zip(row.chunks_exact(slots)) {
@@ -179,7 +117,7 @@ impl SlipJacobian {
             let mut column = vec![0.0; size];
             of.product(&yielding, border.rate, &mut column);
             for (j, by) in column.iter().enumerate() {
-                matrix.row_mut(j)[size] = -by * border.omega;
+                transposed[(size, j)] = -by * border.omega;
             }
             let row = &border.row[..border.rate.len()];
             let mut last = vec![0.0; size];
@@ -190,16 +128,17 @@ impl SlipJacobian {
             }
             let along: f64 = row.iter().zip(border.rate).map(|(b, r)| b * r).sum();
             last.push((border.row[row.len()] + along) * border.omega);
-            matrix.row_mut(size)[..total].copy_from_slice(&last);
+            last.into_iter().enumerate().for_each(|(i, entry)| transposed[(i, size)] = entry);
         }
-        Self { yielding, slots, factors: matrix.factorise() }
+        Self { yielding, slots, factors: transposed.partial_piv_lu() }
     }
 
     fn solve_in_place(&self, x: &mut [f64]) {
         if x.is_empty() {
             return;
         }
-        self.factors.solve(x);
+        let x = faer::MatMut::from_column_major_slice_mut(x, x.len(), 1);
+        self.factors.solve_transpose_in_place_with_conj(Conj::No, x);
     }
 
     /// Adds slip loads to their places among all.
@@ -250,7 +189,9 @@ impl SlipJacobian {
             right[..count].iter().zip(border.rate).map(|(r, rate)| r + ahead * rate).collect();
         add_response(&change, &mut step);
         step.push(ahead);
-        (step, self.factors.sign())
+        let pivots = self.factors.U().diagonal().column_vector().iter().map(|p| p.signum());
+        let sign = pivots.product::<f64>() * parity(self.factors.P().arrays().0);
+        (step, sign)
     }
 }
 

@@ -229,16 +229,6 @@ impl BlockFactors {
         kernels::substitute(&self.lu.values, &mut right.values, sizes);
     }
 
-    /// Sign of the determinant.
-    #[must_use]
-    pub fn sign(&self) -> f64 {
-        let own = |(i, pivot): (usize, &usize)| {
-            let swapped = if i == *pivot { 1.0 } else { -1.0 };
-            swapped * self.lu[(i, i)].signum()
-        };
-        self.pivots.iter().enumerate().map(own).product()
-    }
-
     /// Solves in place for one right-hand side.
     pub fn solve_vector(&self, right: &mut [f64]) {
         for (i, &pivot) in self.pivots.iter().enumerate() {

@@ -13,6 +13,8 @@ use faer::{Par, Side};
 
 /// Width of what holds a frequency, squared, relative to it.
 const NARROW: f64 = 1e-13;
+/// Distance, relative, of a frequency beside one at which a factorisation breaks down.
+const BESIDE: f64 = 1e-12;
 
 /// Squared frequencies in `[low, high]`, ascending; nothing where a factorisation fails.
 pub(super) fn squared_between(
@@ -28,7 +30,11 @@ pub(super) fn squared_between(
     let symbolic =
         factorize_symbolic_cholesky(pattern, Side::Lower, SymmetricOrdering::Amd, parameters);
     let symbolic = symbolic.ok()?;
-    let below = |squared: f64| below(&symbolic, mass, stiffness, squared);
+    // A pivot may be 0 by chance.
+    let below = |squared: f64| {
+        let beside = || below(&symbolic, mass, stiffness, squared * (1.0 + BESIDE));
+        below(&symbolic, mass, stiffness, squared).or_else(beside)
+    };
     let mut found = Vec::new();
     let mut rest = vec![(low, below(low)?, high, below(high)?)];
     while let Some((low, before, high, up_to)) = rest.pop() {

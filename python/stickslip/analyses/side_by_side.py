@@ -6,11 +6,11 @@ comes in the order of the parts.
 
 from __future__ import annotations
 
+import os
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, wait
 from itertools import islice
-from os import cpu_count
 from threading import Event, local
 from typing import TypeVar
 
@@ -50,7 +50,7 @@ def in_turn(
         Behind the last part that was complete; or what the part raises that was not.
     """
     count = len(parts)
-    threads = min(cpu_count() or 1, count)
+    threads = min(_processors(), count)
     if alone or threads <= 1 or getattr(_WITHIN, "part", False):
         for number, part in enumerate(parts):
             yield part(share(progress, number / count, (number + 1) / count))
@@ -92,6 +92,11 @@ def in_turn(
 def has_own_laws(model: Model) -> bool:
     """Return whether a contact law is the user's own, which need not bear several threads."""
     return any(isinstance(contact, ContactLaw) for contact in model.contacts)
+
+
+def _processors() -> int:
+    """Return how many processors this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _awaited(

@@ -163,7 +163,7 @@ def highest_of(result: Peaks, dof: str, amplitude: Float) -> Peak:
         return _told(result, dof, omega, top, beside_gap=True)
     apart = result.arrays.jump | result.arrays.further
     if apart[best : best + 2].any():
-        return Peak(*top, at_edge=False)
+        return Peak(*top, at_edge=top[0] in (omega.min(), omega.max()))
     x, y = omega[around] / top[0] - 1.0, amplitude[around] / top[1] - 1.0
     before, after = np.hypot(np.diff(x), np.diff(y))
     if not (before and after):

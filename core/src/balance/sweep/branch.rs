@@ -53,6 +53,8 @@ pub(super) fn branch_through(
     (from, to): (f64, f64),
     bounds: (f64, f64),
 ) -> Result<(Vec<Arc<Point>>, CurveEnd), Error> {
+    // What estimates have learnt is of another motion.
+    balance.neighbour = Default::default();
     let stops = stops(balance, &first, from, to)?;
     let longest = LONGEST * (bounds.1 - bounds.0);
     let inside = bounds.0 < from && from < bounds.1;

@@ -26,8 +26,8 @@ pub(super) fn sweep_branches(
         }
     }
     if balance.further && matches!(end, CurveEnd::Range | CurveEnd::Returned) {
-        let complete =
-            add_further_branches(&mut balance, &mut points, (from.min(to), from.max(to)))?;
+        let bounds = (from.min(to), from.max(to));
+        let complete = add_further_branches(&mut balance, &mut points, bounds);
         end = if complete { end } else { CurveEnd::Interrupted };
     }
     let interrupted = end == CurveEnd::Interrupted;

@@ -35,20 +35,17 @@ const NEAR: f64 = 0.02;
 const SAME: f64 = 1e-3;
 
 /// Adds to the points of a curve those of its further branches; whether nobody has ended that.
-///
-/// # Errors
-/// As for a solution at one frequency.
 pub(super) fn add_further_branches(
     balance: &mut ForcedBalance<'_>,
     points: &mut Vec<Arc<Point>>,
     bounds: (f64, f64),
-) -> Result<bool, Error> {
+) -> bool {
     // Of many contacts a single look would cost more than the curve.
     if balance.profile.products > 0 {
-        return Ok(true);
+        return true;
     }
     let kept = balance.kept.take();
-    let (mut begin, mut branches, mut complete) = (points.len(), 0, true);
+    let (mut begin, mut branches) = (points.len(), 0);
     let own = points.last().and_then(|last| last.unknowns()).map_or(1, |x| x.values().len());
     let mut affordable = balance.profile.evaluations.max(CHEAP / own.max(1));
     for look in LOOKS {
@@ -56,27 +53,29 @@ pub(super) fn add_further_branches(
         let omega = (1.0 - share) * bounds.0 + share * bounds.1;
         loop {
             let before = balance.profile.evaluations;
-            let found = other_motion(balance, points, omega, affordable)?;
+            let found = other_motion(balance, points, omega, affordable);
             affordable = affordable.saturating_sub(balance.profile.evaluations - before);
-            let Some(first) = found else { break };
-            let (branch, end) = both_ways(balance, first, bounds)?;
+            // Nobody has asked for these frequencies: what fails there finds nothing.
+            let Ok(Some(first)) = found else { break };
+            let Ok((branch, end)) = both_ways(balance, first, bounds) else { break };
             points.extend(branch);
             points[begin..].iter().for_each(|point| keep(kept, point));
             (begin, branches) = (points.len(), branches + 1);
-            complete = end != CurveEnd::Interrupted;
-            if !complete || branches == MOST {
-                return Ok(complete);
+            if end == CurveEnd::Interrupted {
+                return false;
+            }
+            if branches == MOST {
+                return true;
             }
         }
         if !balance.report(1.0) {
-            return Ok(false);
+            return false;
         }
         if affordable == 0 {
             break;
         }
     }
-    balance.kept = kept;
-    Ok(complete)
+    true
 }
 
 /// The branch through a point in both directions.

@@ -87,12 +87,10 @@ impl Jenkins {
     /// Whether no element reaches its limit at displacements as large as all amplitudes together, so
     /// that the slip load vanishes: turning points need not be known. A mean would follow them.
     fn surely_sticks(&self, motion: Motion<'_>) -> bool {
-        let harmonics = motion.table.harmonics();
-        if harmonics.has_mean() {
+        if motion.table.harmonics().has_mean() {
             return false;
         }
-        let amplitudes = motion.displacement.chunks_exact(2).map(norm);
-        let largest = (1.0 + ROUNDING) * amplitudes.sum::<f64>();
+        let largest = (1.0 + ROUNDING) * motion.displacement.chunks_exact(2).map(norm).sum::<f64>();
         let sticks = |slider: &Slider| {
             slider.stiffness > 0.0 && slider.stiffness * largest < slider.slip_force
         };
@@ -160,13 +158,11 @@ impl ContactLaw for Jenkins {
         if self.surely_sticks(motion) {
             return Some(false);
         }
-        let harmonics = motion.table.harmonics();
-        let mut pairs = motion.displacement[harmonics.offset()..].chunks_exact(2);
-        let fundamental = pairs.next().map_or(0.0, norm);
+        let mut pairs = motion.displacement[motion.table.harmonics().offset()..].chunks_exact(2);
+        let fundamental = (1.0 - ROUNDING) * pairs.next().map_or(0.0, norm);
         let least = fundamental - pairs.map(norm).sum::<f64>();
         let slips = |slider: &Slider| {
-            slider.slip_force > 0.0
-                && slider.stiffness * least > (1.0 + ROUNDING) * slider.slip_force
+            slider.slip_force > 0.0 && slider.stiffness * least > slider.slip_force
         };
         self.sliders.iter().any(slips).then_some(true)
     }

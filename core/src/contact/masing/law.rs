@@ -8,8 +8,7 @@
 
 use super::integrals::{add_loops, every, sweep};
 use super::loops::{Branch, Loops, Stretch};
-use crate::contact::backbone::Backbone;
-use crate::contact::backbone::LoadingCurve;
+use crate::contact::backbone::{Backbone, LoadingCurve};
 use crate::contact::law::HarmonicForce;
 use crate::contact::parameter::{number, numbers};
 use crate::contact::return_map::ReturnMapJacobian;
