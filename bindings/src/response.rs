@@ -73,13 +73,14 @@ fn swept<'py>(
             let half_wave = points.first()?.unknowns()?.harmonics().half_wave();
             let profile = Profile::default();
             let end = CurveEnd::Interrupted;
-            Some(balance::Solution { points, half_wave, interrupted: true, end, profile })
+            Some(balance::Solution { points, half_wave, interrupted: true, end, cut: 0, profile })
         },
     )?;
     let points = found.points.iter().map(AsRef::as_ref);
     let columns = Columns::new(py);
     columns.responses(points.clone(), observed, model.compliance().contacts())?;
     columns.tell("end", end_name(found.end))?;
+    columns.tell("cut", found.cut)?;
     curve(columns, points, found.half_wave, found.interrupted, &found.profile)
 }
 

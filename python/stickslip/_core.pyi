@@ -79,6 +79,7 @@ class Solution:
     computed: int
     interrupted: bool
     end: str
+    cut: int
     timings: dict[str, float]
     counters: dict[str, int]
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
+from stickslip import _core
 
 
 def absorber(force: float) -> ss.Model:
@@ -91,3 +92,18 @@ def test_branches_are_kept_in_files_and_drawn_apart(tmp_path) -> None:
     for x in lines:
         inside = np.isclose(np.asarray(x)[1:], begins, rtol=1e-9)
         assert not (inside & (np.asarray(x)[:-1] == frf.omega[frf.branch == 0][-1])).any()
+
+
+def test_a_further_branch_that_ends_inside_the_range_is_told(monkeypatch) -> None:
+    core = _core.forced_response
+
+    def cut(*given, **named):
+        solution = core(*given, **named)
+        solution.cut = 1
+        return solution
+
+    monkeypatch.setattr(_core, "forced_response", cut)
+    frf = ss.forced_response(absorber(0.15), (0.5, 3.5), 5, stability=False)
+    (told,) = [one for one in frf.diagnostics if one.code == "further-branches"]
+    assert told.data["cut"] == 1
+    assert "1 of them could not be followed" in told.text

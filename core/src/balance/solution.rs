@@ -234,6 +234,8 @@ pub struct Solution {
     pub interrupted: bool,
     /// How a curve over a range ended.
     pub end: CurveEnd,
+    /// How many further branches end inside the range.
+    pub cut: usize,
     /// Where the time went.
     pub profile: Profile,
 }

@@ -37,7 +37,7 @@ def branch_assumptions(
             unstable > 0 and told("unstable", points=unstable, _solved=int(arrays.solved.sum())),
             unresolved > 0 and told("stability-undecided/points", points=unresolved),
             _jumps(arrays),
-            _further(arrays),
+            _further(arrays, solution.cut),
             solution.end in _ENDS
             and told(
                 _ENDS[solution.end],
@@ -66,8 +66,8 @@ def _jumps(arrays: Arrays) -> Diagnostic | None:
     )
 
 
-def _further(arrays: Arrays) -> Diagnostic | None:
-    """Name the first further branch, and how many there are."""
+def _further(arrays: Arrays, cut: int) -> Diagnostic | None:
+    """Name the first further branch, how many there are, and how many end inside the range."""
     begins = np.flatnonzero(arrays.further)
     if not begins.size:
         return None
@@ -75,8 +75,10 @@ def _further(arrays: Arrays) -> Diagnostic | None:
     return told(
         "further-branches",
         count=int(begins.size),
+        cut=cut,
         low=float(first.min()),
         high=float(first.max()),
         _branches="1 further branch" if begins.size == 1 else f"{begins.size} further branches",
+        _cut=f" {cut} of them could not be followed to an end of the range." if cut else "",
         _first="it reaches" if begins.size == 1 else "the first reaches",
     )

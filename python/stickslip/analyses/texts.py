@@ -216,7 +216,7 @@ TEXTS = {
     "jump": "The {_direction} sweep jumps to another branch between omega = {low:.6g} and "
     "{high:.6g} rad/s{_more}; a range, omega=(from, to), follows the branch around its fold.",
     "further-branches": "{_branches} found beside the branch that begins at the end of the range, "
-    "from other starts: {_first} from {low:.6g} to {high:.6g} rad/s. There may be more.",
+    "from other starts: {_first} from {low:.6g} to {high:.6g} rad/s.{_cut} There may be more.",
     "branch-end/returned": "The branch that begins at omega = {_start:.6g} rad/s comes back to "
     "that end of the range: the motions at the other end lie on another branch; begin there.",
     "branch-end/stalled": "Stalled: no way ahead of the branch was found at omega = {omega:.6g} "

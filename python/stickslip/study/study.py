@@ -165,7 +165,7 @@ class Study:
         return tuple(case.model for case in self.cases)
 
     def run(self, progress: Callable[[float], None] | None = None) -> Iterator[Result]:
-        """Compute the results, one after the other.
+        """Compute the results, in their order.
 
         Parameters
         ----------

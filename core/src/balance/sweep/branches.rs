@@ -25,13 +25,15 @@ pub(super) fn sweep_branches(
             (points, end) = (others, other_end);
         }
     }
+    let mut cut = 0;
     if balance.further && matches!(end, CurveEnd::Range | CurveEnd::Returned) {
         let bounds = (from.min(to), from.max(to));
-        let complete = add_further_branches(&mut balance, &mut points, bounds);
+        let complete;
+        (complete, cut) = add_further_branches(&mut balance, &mut points, bounds);
         end = if complete { end } else { CurveEnd::Interrupted };
     }
     let interrupted = end == CurveEnd::Interrupted;
-    Ok(Solution { end, ..finish(balance, points, interrupted, start) })
+    Ok(Solution { end, cut, ..finish(balance, points, interrupted, start) })
 }
 
 /// The branch that begins at one end of a range, and how it ended.

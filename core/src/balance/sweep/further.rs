@@ -34,18 +34,19 @@ const NEAR: f64 = 0.02;
 /// … and of motions that are the same.
 const SAME: f64 = 1e-3;
 
-/// Adds to the points of a curve those of its further branches; whether nobody has ended that.
+/// Adds to the points of a curve those of its further branches; whether nobody has ended that, and how many
+/// of them end inside the range.
 pub(super) fn add_further_branches(
     balance: &mut ForcedBalance<'_>,
     points: &mut Vec<Arc<Point>>,
     bounds: (f64, f64),
-) -> bool {
+) -> (bool, usize) {
     // Of many contacts a single look would cost more than the curve.
     if balance.profile.products > 0 {
-        return true;
+        return (true, 0);
     }
     let kept = balance.kept.take();
-    let (mut begin, mut branches) = (points.len(), 0);
+    let (mut begin, mut branches, mut cut) = (points.len(), 0, 0);
     let own = points.last().and_then(|last| last.unknowns()).map_or(1, |x| x.values().len());
     let mut affordable = balance.profile.evaluations.max(CHEAP / own.max(1));
     for look in LOOKS {
@@ -61,21 +62,22 @@ pub(super) fn add_further_branches(
             points.extend(branch);
             points[begin..].iter().for_each(|point| keep(kept, point));
             (begin, branches) = (points.len(), branches + 1);
+            cut += usize::from(matches!(end, CurveEnd::Stalled | CurveEnd::Points));
             if end == CurveEnd::Interrupted {
-                return false;
+                return (false, cut);
             }
             if branches == MOST {
-                return true;
+                return (true, cut);
             }
         }
         if !balance.report(1.0) {
-            return false;
+            return (false, cut);
         }
         if affordable == 0 {
             break;
         }
     }
-    true
+    (true, cut)
 }
 
 /// The branch through a point in both directions.
@@ -95,7 +97,11 @@ fn both_ways(
         back.reverse();
         back.pop();
         back.append(&mut points);
-        (points, end) = (back, last);
+        points = back;
+        // An end inside the range is told, at whichever side it is.
+        if !matches!(end, CurveEnd::Stalled | CurveEnd::Points) || last == CurveEnd::Interrupted {
+            end = last;
+        }
     }
     if let Some(first) = points.first_mut() {
         Arc::make_mut(first).further = true;

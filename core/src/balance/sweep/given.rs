@@ -97,6 +97,7 @@ pub(super) fn finish(
         half_wave: balance.half_wave(),
         interrupted,
         end: if interrupted { CurveEnd::Interrupted } else { CurveEnd::Range },
+        cut: 0,
         profile: Profile { total: start.elapsed(), ..balance.profile },
     }
 }

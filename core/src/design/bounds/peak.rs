@@ -87,7 +87,7 @@ pub(crate) fn bound_peak(
         points.push(Arc::new(balance.solve(sample.at, Some(&sample.unknowns))?));
     }
     let (end, profile) = (CurveEnd::Range, Profile::default());
-    let curve = Solution { points, half_wave: false, interrupted: false, end, profile };
+    let curve = Solution { points, half_wave: false, interrupted: false, end, cut: 0, profile };
     let tables = tables_of(&curve);
     let mut search = Search::new(model, settings, &observe, &curve, &tables)?;
     let found = search.along(&curve, None, progress)?;
