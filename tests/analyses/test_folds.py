@@ -119,7 +119,7 @@ def drift(model, frf, index, periods, steps=400):
 
 
 def growth_of_closed_orbit(model, frf, index):
-    """Return the largest multiplier of the orbit that shooting finds beside a motion; None if there is none."""
+    """Return the largest multiplier of the orbit that shooting finds beside a motion, or None."""
     size = 2 * len(frf.dofs)
 
     def period(values):
