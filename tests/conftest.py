@@ -9,6 +9,9 @@ os.environ["MPLBACKEND"] = "agg"  # no test opens a window, nor does a command t
 # Tests run on every core: threads of small products would wait for each other.
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
+# Heeded as in a terminal also where the parent ignores it: by tests, and by commands that they run.
+signal.signal(signal.SIGINT, signal.default_int_handler)
+
 import hypothesis
 import numpy as np
 import pytest
@@ -29,8 +32,7 @@ def nothing_stays():
 
 @pytest.fixture
 def ctrl_c():
-    """Press Ctrl-C some seconds later, heeded as in a terminal also where the parent ignores it."""
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    """Press Ctrl-C some seconds later."""
     timers = []
 
     def press(delay):
@@ -41,4 +43,3 @@ def ctrl_c():
     for timer in timers:
         timer.cancel()
         timer.join()
-    signal.signal(signal.SIGINT, before)
