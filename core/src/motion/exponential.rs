@@ -1,6 +1,7 @@
-//! The exponential of a matrix.
+//! The exponential of a matrix, and of one whose last rows are zeros.
 
-use faer::Mat;
+use faer::linalg::matmul::matmul;
+use faer::{Accum, Mat, MatRef, Par};
 
 /// Size of a matrix up to which the polynomials of degree 8 and 18 are exact to rounding.
 const REACH: [f64; 2] = [0.0499, 1.09];
@@ -32,18 +33,72 @@ const SUMS: [[f64; 5]; 5] = [
     [0.0, 0.0, -9.233_646_193_671_186e-2, -1.693_649_390_020_817_2e-2, -1.400_867_981_820_361e-5],
 ];
 
-/// Exponential of a matrix: its Taylor polynomial of degree 8 or 18 in three or five products (Bader,
-/// Blanes and Casas 2019), scaled and squared. Powers of the matrix tell its size more closely than it
-/// does (Al-Mohy and Higham 2009).
-pub(super) fn exponential(a: &Mat<f64>) -> Mat<f64> {
-    if a.norm_l2() <= REACH[0] {
-        return of_small(a);
+/// A polynomial of the matrix `[[M, N], [0, 0]]`: what linear equations `y' = M y + N r` with constant inputs
+/// r do in a time.
+#[derive(Debug, Clone)]
+pub(super) struct Driven {
+    /// The upper rows, of as many columns as M has and as there are inputs.
+    pub(super) rows: Mat<f64>,
+    /// Diagonal of the lower ones: the polynomial at 0.
+    pub(super) kept: f64,
+}
+
+impl Driven {
+    /// Of a matrix `[M, N]`.
+    pub(super) fn new(rows: Mat<f64>) -> Self {
+        Self { rows, kept: 0.0 }
     }
-    let second = a * a;
-    let third = &second * a;
-    let sixth = &third * &third;
+
+    /// The same times states and inputs, one column each.
+    pub(super) fn applied(&self, states: MatRef<'_, f64>, inputs: MatRef<'_, f64>) -> Mat<f64> {
+        let size = states.nrows();
+        let mut out = Mat::zeros(size, states.ncols());
+        let (own, driven) = (self.rows.get(.., ..size), self.rows.get(.., size..));
+        matmul(out.as_mut(), Accum::Replace, own, states, 1.0, Par::Seq);
+        matmul(out.as_mut(), Accum::Add, driven, inputs, 1.0, Par::Seq);
+        out
+    }
+
+    fn times(&self, other: &Self) -> Self {
+        let size = self.rows.nrows();
+        let mut rows = Mat::zeros(size, self.rows.ncols());
+        let own = self.rows.get(.., ..size);
+        matmul(rows.as_mut(), Accum::Replace, own, other.rows.as_ref(), 1.0, Par::Seq);
+        if other.kept != 0.0 {
+            for j in size..rows.ncols() {
+                let out = rows.col_as_slice_mut(j).iter_mut();
+                out.zip(self.rows.col_as_slice(j)).for_each(|(out, a)| *out += other.kept * a);
+            }
+        }
+        Self { rows, kept: self.kept * other.kept }
+    }
+
+    fn plus(mut self, other: &Self) -> Self {
+        for j in 0..self.rows.ncols() {
+            let out = self.rows.col_as_slice_mut(j).iter_mut();
+            out.zip(other.rows.col_as_slice(j)).for_each(|(out, a)| *out += a);
+        }
+        self.kept += other.kept;
+        self
+    }
+
+    fn norm(&self) -> f64 {
+        self.rows.norm_l2()
+    }
+}
+
+/// Exponential of a matrix with its products `power`: its Taylor polynomial of degree 8 or 18 in three or five
+/// products (Bader, Blanes and Casas 2019), scaled and squared. Powers of the matrix tell its size more
+/// closely than it does (Al-Mohy and Higham 2009).
+pub(super) fn exponential(a: &Driven, power: impl Fn(&Driven) -> Driven) -> Driven {
+    let second = power(a);
+    if a.norm() <= REACH[0] {
+        return of_small(a, &second);
+    }
+    let third = power(&second);
+    let sixth = third.times(&third);
     // ‖A^k‖ of k ≥ 19 is at most that of the sixth power as often as it is in k − 7, and of lower ones.
-    let root = |power: &Mat<f64>, order: f64| power.norm_l2().log2() / order;
+    let root = |power: &Driven, order: f64| power.norm().log2() / order;
     let most = root(&second, 2.0).max(root(&third, 3.0));
     let size = (12.0 * root(&sixth, 6.0).min(most) + 7.0 * most) / 19.0;
     let squarings = (size - REACH[1].log2()).ceil().max(0.0);
@@ -55,47 +110,51 @@ pub(super) fn exponential(a: &Mat<f64>) -> Mat<f64> {
         combined(coefficients[0], factors, powers)
     };
     let [first, low, middle, offset, last] = [0, 1, 2, 3, 4].map(|number| sum(&SUMS[number]));
-    let ninth = first * last + offset;
-    let mut value = (middle + &ninth) * &ninth + low;
+    let ninth = first.times(&last).plus(&offset);
+    let mut value = middle.plus(&ninth).times(&ninth).plus(&low);
     for _ in 0..squarings as usize {
-        value = &value * &value;
+        value = value.times(&value);
     }
     value
 }
 
 /// Degree 8, without scaling.
-fn of_small(a: &Mat<f64>) -> Mat<f64> {
+fn of_small(a: &Driven, second: &Driven) -> Driven {
     let root = 177.0_f64.sqrt();
     let third = 2.0 / 3.0;
-    let second = a * a;
     let ratio = third * (1.0 + root) / 88.0;
-    let fourth = &second * combined(0.0, [ratio, 0.25 * ratio], [a, &second]);
+    let fourth = second.times(&combined(0.0, [ratio, 0.25 * ratio], [a, second]));
     let factors = [
         (11.0 * root - 11.0) / (1260.0 * third),
         (11.0 * root - 99.0) / (5040.0 * third),
         (89.0 - root) / (5040.0 * third * third),
     ];
     let constant = (29.0 * root - 271.0) / (315.0 * third);
-    let eighth = combined(0.0, [third, 1.0], [&second, &fourth])
-        * combined(constant, factors, [a, &second, &fourth]);
+    let eighth = combined(0.0, [third, 1.0], [second, &fourth]).times(&combined(
+        constant,
+        factors,
+        [a, second, &fourth],
+    ));
     let bend = (857.0 - 58.0 * root) / 630.0;
-    combined(1.0, [1.0, bend, 1.0], [a, &second, &eighth])
+    combined(1.0, [1.0, bend, 1.0], [a, second, &eighth])
 }
 
 /// `constant + Σ factor · matrix`.
-fn combined<const N: usize>(
-    constant: f64,
-    factors: [f64; N],
-    matrices: [&Mat<f64>; N],
-) -> Mat<f64> {
-    let size = matrices[0].nrows();
-    let mut sum = Mat::zeros(size, size);
-    for j in 0..size {
-        let out = sum.col_as_slice_mut(j);
+fn combined<const N: usize>(constant: f64, factors: [f64; N], matrices: [&Driven; N]) -> Driven {
+    let (size, columns) = (matrices[0].rows.nrows(), matrices[0].rows.ncols());
+    let mut sum = Driven { rows: Mat::zeros(size, columns), kept: constant };
+    for (factor, matrix) in factors.iter().zip(matrices) {
+        sum.kept += factor * matrix.kept;
+    }
+    for j in 0..columns {
+        let out = sum.rows.col_as_slice_mut(j);
         for (factor, matrix) in factors.iter().zip(matrices).filter(|(factor, _)| **factor != 0.0) {
-            out.iter_mut().zip(matrix.col_as_slice(j)).for_each(|(out, a)| *out += factor * a);
+            let own = matrix.rows.col_as_slice(j);
+            out.iter_mut().zip(own).for_each(|(out, a)| *out += factor * a);
         }
-        out[j] += constant;
+        if j < size {
+            out[j] += constant;
+        }
     }
     sum
 }
@@ -104,12 +163,16 @@ fn combined<const N: usize>(
 mod tests {
     use super::*;
 
+    fn of(a: Mat<f64>) -> Mat<f64> {
+        let a = Driven::new(a);
+        exponential(&a, |power| a.times(power)).rows
+    }
+
     /// Coefficients of the polynomials themselves, from a matrix with but one diagonal.
     #[test]
     fn both_polynomials_are_those_of_taylor() {
         for (degree, scale) in [(8, 0.01), (18, 0.2)] {
-            let a = Mat::from_fn(25, 25, |i, j| if i == j + 1 { scale } else { 0.0 });
-            let e = exponential(&a);
+            let e = of(Mat::from_fn(25, 25, |i, j| if i == j + 1 { scale } else { 0.0 }));
             let mut expected = 1.0;
             for k in 0..=degree {
                 assert!((e[(k, 0)] / expected - 1.0).abs() < 1e-13, "{degree} {k}");
@@ -121,11 +184,24 @@ mod tests {
     #[test]
     fn the_exponential_of_a_rotation_is_exact() {
         for angle in [1e-3_f64, 0.03, 0.7, 7.3, 111.0] {
-            let a = Mat::from_fn(2, 2, |i, j| angle * (i as f64 - j as f64));
-            let e = exponential(&a);
+            let e = of(Mat::from_fn(2, 2, |i, j| angle * (i as f64 - j as f64)));
             let allowed = 1e-15 * angle.max(10.0);
             assert!((e[(0, 0)] - angle.cos()).abs() < allowed, "{angle}");
             assert!((e[(1, 0)] - angle.sin()).abs() < allowed, "{angle}");
+        }
+    }
+
+    /// `y' = J y + e r` turns about where it rests.
+    #[test]
+    fn constant_inputs_move_a_rotation_about_its_centre() {
+        for angle in [1e-3_f64, 0.03, 0.7, 7.3, 111.0] {
+            let e = of(Mat::from_fn(2, 3, |i, j| match j {
+                2 => angle * (1.0 - i as f64),
+                j => angle * (i as f64 - j as f64),
+            }));
+            let allowed = 1e-15 * angle.max(10.0);
+            assert!((e[(0, 2)] - angle.sin()).abs() < allowed, "{angle}");
+            assert!((e[(1, 2)] - (1.0 - angle.cos())).abs() < allowed, "{angle}");
         }
     }
 }

@@ -1,16 +1,65 @@
 //! Disturbances over a stretch in which the equations are linear: the exponential of their matrix.
+//!
+//! Strains follow the displacements, `g = r + R η` with a constant r, so that they need no equations of their
+//! own: `η'' + C η' + (Ω² + G R) η = −G r`.
 
-use super::exponential::exponential;
+use super::damping::Damping;
+use super::exponential::{exponential, Driven};
 use super::modal_system::ContactState;
 use super::transition::Transition;
-use faer::Mat;
+use crate::contact::PointState;
+use faer::linalg::matmul::matmul;
+use faer::{Accum, Mat, Par};
+
+/// Numbers of all exponentials that are kept.
+const ROOM: usize = 1 << 23;
+/// Change of a stretch, in units of the fastest rate, that a power series follows in fewer products than an
+/// exponential takes.
+const CLOSE: f64 = 1.0;
+
+/// The exponential over a stretch.
+#[derive(Debug)]
+struct Propagator {
+    points: Vec<PointState>,
+    strains: Vec<usize>,
+    duration: f64,
+    exponential: Driven,
+}
+
+/// Those of the stretches of one motion: of another one next to it, stretches are a little longer or shorter.
+#[derive(Debug, Default)]
+pub(crate) struct Propagators {
+    known: Vec<Propagator>,
+    numbers: usize,
+}
+
+/// Equations of the disturbances in one state of the contacts, in coordinates `(s η, η')`.
+struct Equations {
+    /// s per mode [rad/s].
+    scale: Vec<f64>,
+    /// Strains that move or are disturbed.
+    strains: Vec<usize>,
+    /// R, strains × modes.
+    rates: Mat<f64>,
+    /// `(Ω² + G R) / s`, modes × modes.
+    stiffness: Mat<f64>,
+    /// C.
+    damping: Damping,
+    /// `−G`, modes × strains.
+    input: Mat<f64>,
+}
 
 impl Transition<'_> {
     /// Takes disturbances, column by column, over a duration \[s\]. Strains that neither move nor are
     /// disturbed, those of contacts that slip under a constant limit, take no part.
-    pub(super) fn advance(&self, regime: &ContactState, duration: f64, total: &mut Mat<f64>) {
-        let first = 2 * self.weight.len();
-        let rates = self.strain_rates(regime);
+    pub(super) fn advance(
+        &self,
+        regime: &ContactState,
+        duration: f64,
+        total: &mut Mat<f64>,
+        known: &mut Propagators,
+    ) {
+        let (modes, first) = (self.weight.len(), 2 * self.weight.len());
         let mut disturbed = vec![false; total.nrows()];
         let mut columns = Vec::with_capacity(total.ncols());
         for j in 0..total.ncols() {
@@ -20,17 +69,89 @@ impl Transition<'_> {
                 columns.push(j);
             }
         }
-        let moves =
-            |row: usize| row < first || rates.iter().any(|(strain, _, _)| first + strain == row);
-        let rows: Vec<usize> =
-            (0..total.nrows()).filter(|&row| disturbed[row] || moves(row)).collect();
-        let propagator = exponential(&self.generator(regime, &rates, &rows, duration));
-        let before = Mat::from_fn(rows.len(), columns.len(), |i, j| total[(rows[i], columns[j])]);
-        let after = propagator * before;
+        let own = self.equations(regime, &disturbed[first..]);
+        let factors: Vec<f64> = own.scale.iter().zip(&self.weight).map(|(s, w)| s / w).collect();
+        let mut states = Mat::from_fn(first, columns.len(), |i, j| {
+            total[(i, columns[j])] * factors.get(i).unwrap_or(&1.0)
+        });
+        let mut inputs = Mat::from_fn(own.strains.len(), columns.len(), |i, j| {
+            total[(first + own.strains[i], columns[j])]
+        });
+        let by_state =
+            Mat::from_fn(own.strains.len(), modes, |i, j| own.rates[(i, j)] / own.scale[j]);
+        let moved = |sign: f64, states: &Mat<f64>, strains: &mut Mat<f64>| {
+            let displaced = states.get(..modes, ..);
+            matmul(strains.as_mut(), Accum::Add, by_state.as_ref(), displaced, sign, Par::Seq);
+        };
+        moved(-1.0, &states, &mut inputs);
+        states = known.advance(&own, regime, duration, states, &inputs);
+        moved(1.0, &states, &mut inputs);
         for (j, &column) in columns.iter().enumerate() {
-            for (i, &row) in rows.iter().enumerate() {
-                total[(row, column)] = after[(i, j)];
+            let out = total.col_as_slice_mut(column);
+            let after = states.col_as_slice(j).iter().enumerate();
+            out.iter_mut()
+                .zip(after)
+                .for_each(|(out, (i, y))| *out = y / factors.get(i).unwrap_or(&1.0));
+            for (strain, g) in own.strains.iter().zip(inputs.col_as_slice(j)) {
+                out[first + strain] = *g;
             }
+        }
+    }
+
+    /// The equations in one state of the contacts, with all strains that move or are disturbed.
+    fn equations(&self, regime: &ContactState, disturbed: &[bool]) -> Equations {
+        let (system, modes) = (self.system, self.weight.len());
+        let rates = self.strain_rates(regime);
+        let mut takes_part = disturbed.to_vec();
+        rates.iter().for_each(|(strain, _, _)| takes_part[*strain] = true);
+        let strains: Vec<usize> = (0..takes_part.len()).filter(|&i| takes_part[i]).collect();
+        let mut moves = Mat::<f64>::zeros(strains.len(), modes);
+        for (strain, point, rate) in &rates {
+            let Ok(row) = strains.binary_search(strain) else { continue };
+            for (j, b) in system.contact_shape(*point).iter().enumerate() {
+                moves[(row, j)] += rate * b;
+            }
+        }
+        let mut input = Mat::<f64>::zeros(modes, strains.len());
+        for body in system.bodies() {
+            for (own, strain) in body.strains.clone().enumerate() {
+                let Ok(place) = strains.binary_search(&strain) else { continue };
+                for (row, i) in body.points.clone().enumerate() {
+                    let root = body.elastic.root()[(row, own)];
+                    let shape = system.contact_shape(i);
+                    input
+                        .col_as_slice_mut(place)
+                        .iter_mut()
+                        .zip(shape)
+                        .for_each(|(a, b)| *a -= b * root);
+                }
+            }
+        }
+        let mut stiffness = Mat::<f64>::zeros(modes, modes);
+        matmul(stiffness.as_mut(), Accum::Replace, input.as_ref(), moves.as_ref(), -1.0, Par::Seq);
+        for &point in &system.normals {
+            let slope = regime.tangent[(point, point)];
+            let shape = system.contact_shape(point);
+            for (j, b) in shape.iter().enumerate().filter(|_| slope != 0.0) {
+                let column = stiffness.col_as_slice_mut(j).iter_mut();
+                column.zip(shape).for_each(|(k, own)| *k += own * slope * b);
+            }
+        }
+        let mut scale = Vec::with_capacity(modes);
+        for (j, (square, weight)) in system.omega_squared().iter().zip(&self.weight).enumerate() {
+            stiffness[(j, j)] += square;
+            scale.push(stiffness[(j, j)].abs().sqrt().max(*weight));
+        }
+        for (j, s) in scale.iter().enumerate() {
+            stiffness.col_as_slice_mut(j).iter_mut().for_each(|k| *k /= s);
+        }
+        Equations {
+            scale,
+            strains,
+            rates: moves,
+            stiffness,
+            damping: system.damping.clone(),
+            input,
         }
     }
 
@@ -48,54 +169,112 @@ impl Transition<'_> {
         }
         all
     }
+}
 
-    /// Matrix of the linear equations, of the given rows alone, times a duration \[s\].
-    fn generator(
-        &self,
-        regime: &ContactState,
-        rates: &[(usize, usize, f64)],
-        rows: &[usize],
-        duration: f64,
-    ) -> Mat<f64> {
-        let (size, modes) = (rows.len(), self.weight.len());
-        // All coordinates of the motion are rows, and stand first.
-        let place = |strain: usize| rows[2 * modes..].binary_search(&(2 * modes + strain)).ok();
-        let mut a = Mat::<f64>::zeros(size, size);
-        for j in 0..modes {
-            a[(j, modes + j)] = duration * self.weight[j];
-            a[(modes + j, j)] = -duration * self.system.omega_squared()[j] / self.weight[j];
+impl Equations {
+    /// Derivatives of states, one column each, times a duration.
+    fn rates_of(&self, states: &Mat<f64>, duration: f64) -> Mat<f64> {
+        let modes = self.scale.len();
+        let mut out = Mat::<f64>::zeros(states.nrows(), states.ncols());
+        let (mut upper, mut lower) = out.split_at_row_mut(modes);
+        let (displacement, velocity) = states.split_at_row(modes);
+        let minus = -duration;
+        matmul(
+            lower.as_mut(),
+            Accum::Replace,
+            self.stiffness.as_ref(),
+            displacement,
+            minus,
+            Par::Seq,
+        );
+        if let Damping::Full(damping) = &self.damping {
+            matmul(lower.as_mut(), Accum::Add, damping.as_ref(), velocity, minus, Par::Seq);
         }
-        for j in 0..modes {
+        for j in 0..states.ncols() {
             for i in 0..modes {
-                a[(modes + i, modes + j)] = -duration * self.system.damping.entry(i, j);
+                upper[(i, j)] = duration * self.scale[i] * velocity[(i, j)];
             }
-        }
-        for &point in &self.system.normals {
-            let slope = duration * regime.tangent[(point, point)];
-            let shape = self.system.contact_shape(point);
-            for (j, b) in shape.iter().enumerate().filter(|_| slope != 0.0) {
-                for (i, own) in shape.iter().enumerate() {
-                    a[(modes + i, j)] -= own * slope * b / self.weight[j];
+            if let Damping::Diagonal(damping) = &self.damping {
+                for (i, c) in damping.iter().enumerate() {
+                    lower[(i, j)] -= duration * c * velocity[(i, j)];
                 }
             }
         }
-        for body in self.system.bodies() {
-            let strains = body.strains.clone().enumerate();
-            for (own, place) in strains.filter_map(|(own, strain)| Some((own, place(strain)?))) {
-                let column = &mut a.col_as_slice_mut(2 * modes + place)[modes..2 * modes];
-                for (row, i) in body.points.clone().enumerate() {
-                    let root = duration * body.elastic.root()[(row, own)];
-                    let shape = self.system.contact_shape(i);
-                    column.iter_mut().zip(shape).for_each(|(a, b)| *a -= b * root);
+        out
+    }
+
+    /// `[M, N]` times a duration.
+    fn matrix(&self, duration: f64) -> Driven {
+        let modes = self.scale.len();
+        Driven::new(Mat::from_fn(2 * modes, 2 * modes + self.strains.len(), |i, j| {
+            duration
+                * match (i.checked_sub(modes), j.checked_sub(modes)) {
+                    (None, None) => 0.0,
+                    (None, Some(k)) if k == i => self.scale[i],
+                    (None, Some(_)) => 0.0,
+                    (Some(i), None) => -self.stiffness[(i, j)],
+                    (Some(i), Some(k)) if k < modes => -self.damping.entry(i, k),
+                    (Some(i), Some(k)) => self.input[(i, k - modes)],
                 }
+        }))
+    }
+
+    fn exponential(&self, duration: f64) -> Driven {
+        exponential(&self.matrix(duration), |power| {
+            Driven::new(self.rates_of(&power.rows, duration))
+        })
+    }
+
+    /// Takes states a little further, or back, by a power series.
+    fn correct(&self, states: &mut Mat<f64>, inputs: &Mat<f64>, duration: f64) {
+        let modes = self.scale.len();
+        let mut term = self.rates_of(states, duration);
+        let driven = term.get_mut(modes.., ..);
+        matmul(driven, Accum::Add, self.input.as_ref(), inputs.as_ref(), duration, Par::Seq);
+        let mut power = 1.0;
+        loop {
+            let size = term.norm_l2();
+            *states += &term;
+            if size <= f64::EPSILON * 0.1 * states.norm_l2() || !size.is_finite() {
+                return;
             }
+            power += 1.0;
+            term = self.rates_of(&term, duration / power);
         }
-        for (strain, i, rate) in rates {
-            let Some(place) = place(*strain) else { continue };
-            for (j, b) in self.system.contact_shape(*i).iter().enumerate() {
-                a[(2 * modes + place, modes + j)] += duration * rate * b;
+    }
+}
+
+impl Propagators {
+    /// Takes states over a stretch.
+    fn advance(
+        &mut self,
+        equations: &Equations,
+        regime: &ContactState,
+        duration: f64,
+        states: Mat<f64>,
+        inputs: &Mat<f64>,
+    ) -> Mat<f64> {
+        let fastest = equations.scale.iter().fold(0.0_f64, |most, s| most.max(*s));
+        let close = |own: &&Propagator| {
+            (own.duration - duration).abs() * fastest <= CLOSE
+                && own.points == regime.points
+                && own.strains == equations.strains
+        };
+        if let Some(own) = self.known.iter().find(close) {
+            let mut states = own.exponential.applied(states.as_ref(), inputs.as_ref());
+            if own.duration != duration {
+                equations.correct(&mut states, inputs, duration - own.duration);
             }
+            return states;
         }
-        a
+        let exponential = equations.exponential(duration);
+        let states = exponential.applied(states.as_ref(), inputs.as_ref());
+        let numbers = exponential.rows.nrows() * exponential.rows.ncols();
+        if self.numbers + numbers <= ROOM {
+            self.numbers += numbers;
+            let (points, strains) = (regime.points.clone(), equations.strains.clone());
+            self.known.push(Propagator { points, strains, duration, exponential });
+        }
+        states
     }
 }

@@ -15,6 +15,7 @@ use super::linear_phase::{LinearPhase, Onset};
 use super::loop_disturbance::LoopDisturbance;
 use super::modal_system::{ContactState, ModalSystem};
 use super::power_series::PowerSeries;
+use super::propagator::Propagators;
 use super::state::State;
 use crate::contact::PointState;
 use faer::Mat;
@@ -125,13 +126,14 @@ impl<'a> Transition<'a> {
     }
 
     /// Derivative of the end state in the start state along the phases of a motion that begins with
-    /// these forces.
+    /// these forces; `known` holds the exponentials of motions next to it.
     pub(crate) fn along(
         &self,
         phases: &[LinearPhase],
         held: &[PointState],
         force: &[f64],
         loops: &mut LoopDisturbance,
+        known: &mut Propagators,
     ) -> Mat<f64> {
         let own = self.start(phases, held, force);
         let mut total = Mat::zeros(own.nrows(), own.ncols() + loops.columns);
@@ -140,7 +142,7 @@ impl<'a> Transition<'a> {
             if let Some((series, length)) = &phase.slide {
                 self.slide(&phase.regime, series, *length, &mut total, loops);
             } else if phase.duration > 0.0 {
-                self.advance(&phase.regime, phase.duration, &mut total);
+                self.advance(&phase.regime, phase.duration, &mut total, known);
             }
             if let Some(onset) = &phase.onset {
                 self.jump(onset, &mut total);
@@ -282,6 +284,10 @@ impl<'a> Transition<'a> {
             return;
         };
         let row = onset.point - own.points.start;
+        let holds = own.elastic.rank() == 1
+            && onset.jump[onset.point] == -1.0
+            && onset.slope.iter().all(|slope| *slope == 0.0);
+        let alone = if holds { own.strains.clone() } else { 0..0 };
         for column in 0..total.ncols() {
             let mut force: f64 = (0..own.elastic.rank())
                 .map(|a| {
@@ -292,6 +298,11 @@ impl<'a> Transition<'a> {
                 force += slope / self.weight[j] * total[(j, column)];
             }
             for body in bodies {
+                // What rounding would leave of a force that a constant limit holds.
+                if body.strains == alone {
+                    total[(first + body.strains.start, column)] = 0.0;
+                    continue;
+                }
                 let jump = body.elastic.strains(&onset.jump[body.points.clone()]);
                 for (a, jump) in body.strains.clone().zip(jump) {
                     total[(first + a, column)] += jump * force;

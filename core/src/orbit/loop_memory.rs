@@ -12,7 +12,7 @@ use super::remembered_turns::{RememberedTurns, Reversal};
 use super::rotation::Rotation;
 use crate::contact::{LoadingCurve, PointState, Residual, REVERSALS};
 use crate::motion::{
-    FlowEvent, LinearPhase, LoopDisturbance, ModalSystem, State, Transition, Turn,
+    FlowEvent, LinearPhase, LoopDisturbance, ModalSystem, Propagators, State, Transition, Turn,
 };
 use faer::Mat;
 
@@ -281,15 +281,16 @@ impl LoopMemory {
         phases: &[LinearPhase],
         held: &[PointState],
         force: &[f64],
+        known: &mut Propagators,
     ) -> Mat<f64> {
         let Some(start) = &self.start else {
-            return coordinates.along(phases, held, force, &mut LoopDisturbance::default());
+            return coordinates.along(phases, held, force, &mut LoopDisturbance::default(), known);
         };
         let (system, size) = (coordinates.system(), coordinates.size());
         // The disturbances are of displacements, the unknowns have factors.
         let weight = coordinates.weight();
         let mut loops = LoopDisturbance::new(system, start, &self.kept, size, weight);
-        let motion = coordinates.along(phases, held, force, &mut loops);
+        let motion = coordinates.along(phases, held, force, &mut loops, known);
         let all = size + Self::places(system);
         let mut matrix = Mat::zeros(all, all);
         matrix.get_mut(..size, ..).copy_from(&motion);

@@ -5,7 +5,7 @@ use super::loop_memory::LoopMemory;
 use super::price::matrix_price;
 use super::rotation::Rotation;
 use crate::contact::{PointState, Residual};
-use crate::motion::{Flow, FlowEvent, LinearPhase, ModalSystem, State, Transition};
+use crate::motion::{Flow, FlowEvent, LinearPhase, ModalSystem, Propagators, State, Transition};
 use crate::solve::System;
 use faer::linalg::solvers::Solve as _;
 use faer::Mat;
@@ -53,8 +53,9 @@ pub(super) struct Shooting<'a> {
     earlier: bool,
     /// Unknowns, image and points that have slipped of the last evaluation.
     last: Option<(Vec<f64>, Vec<f64>, Vec<bool>)>,
-    /// Transition matrices assembled so far.
+    /// Transition matrices assembled so far, and exponentials of their stretches.
     pub(super) matrices: usize,
+    propagators: Propagators,
 }
 
 impl<'a> Shooting<'a> {
@@ -105,6 +106,7 @@ impl<'a> Shooting<'a> {
             earlier: false,
             last: None,
             matrices: 0,
+            propagators: Propagators::default(),
         }
     }
 
@@ -306,7 +308,8 @@ impl<'a> Shooting<'a> {
             return derivative.clone();
         }
         self.matrices += 1;
-        let along = self.memory.along(&self.coordinates, &self.phases, &self.held, &self.begun);
+        let (coordinates, known) = (&self.coordinates, &mut self.propagators);
+        let along = self.memory.along(coordinates, &self.phases, &self.held, &self.begun, known);
         let derivative = match &self.rotation {
             Some((_, matrix)) => {
                 let (mut turned, size) = (along, matrix.nrows());
