@@ -134,7 +134,7 @@ impl ForcedBalance<'_> {
         point.samples = samples;
         self.profile.recovery += start.elapsed();
         // Without an observed DOF there is nothing whose error could be estimated.
-        if status == PointStatus::Converged && !self.observe.is_empty() {
+        if status == PointStatus::Converged && self.estimated && !self.observe.is_empty() {
             let start = std::time::Instant::now();
             let estimated = self.estimate(equations, &x, &mut point)?;
             self.profile.estimate += start.elapsed();

@@ -32,6 +32,8 @@ pub struct ForcedBalance<'a> {
     pub(super) neighbour: Neighbour,
     pub(super) control: ResolutionControl,
     pub(super) scale: Scale,
+    /// Whether errors are estimated.
+    pub(super) estimated: bool,
     /// The tangent at the last point of a sweep whose branch was asked for.
     pub(super) tangent: Option<Tangent>,
     progress: &'a Progress<'a>,
@@ -94,6 +96,7 @@ impl<'a> ForcedBalance<'a> {
             evaluations: Evaluations::new(model.clone()),
             model,
             scale: Scale::default(),
+            estimated: true,
             tangent: None,
             progress: &|_| true,
             kept: None,
@@ -108,6 +111,13 @@ impl<'a> ForcedBalance<'a> {
     #[must_use]
     pub fn watched(mut self, progress: &'a Progress<'a>) -> Self {
         self.progress = progress;
+        self
+    }
+
+    /// Leaves the errors unknown of points that something else begins with.
+    #[must_use]
+    pub(crate) fn unjudged(mut self) -> Self {
+        self.estimated = false;
         self
     }
 

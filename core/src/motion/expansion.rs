@@ -7,7 +7,6 @@ use super::microslip::Microslip;
 use super::modal_system::{dot, ContactState, ModalSystem};
 use super::polynomial::DEGREE;
 use super::power_series::{sum_of_products, PowerSeries, LONGEST_MICROSLIP};
-use super::projection::take_off;
 use super::sliding::{Slide, Swing};
 use super::state::State;
 
@@ -191,13 +190,11 @@ impl PowerSeries {
                 *next += p.re * re - p.im * im;
             }
         }
-        for point in 0..system.points() {
-            let f = self.force[point * (DEGREE + 1) + power];
-            if f != 0.0 {
-                take_off(system.contact_shape(point), f, next);
-            }
-        }
-        let order = (power + 1) as f64;
+        self.acting.clear();
+        let forces = self.force[power..].iter().step_by(DEGREE + 1).copied().enumerate();
+        self.acting.extend(forces.filter(|(_, force)| *force != 0.0));
+        system.projection.modal_forces(&self.acting, &mut self.modal_force);
+        let (order, slower) = ((power + 1) as f64, 1.0 / (rate * rate));
         let share = 1.0 / (order * (order + 1.0));
         if let Damping::Full(damping) = &system.damping {
             for (j, v) in ahead.iter().enumerate() {
@@ -205,16 +202,14 @@ impl PowerSeries {
                     *next -= rate * order * damping[(i, j)] * v;
                 }
             }
-            for ((next, x), w) in next.iter_mut().zip(here).zip(&self.stiffness) {
-                *next = share * (*next / (rate * rate) - w * x);
-            }
         } else {
-            for j in 0..n {
-                next[j] = share
-                    * (next[j] / (rate * rate)
-                        - self.stiffness[j] * here[j]
-                        - order * self.damping[j] * ahead[j]);
+            for ((next, c), v) in next.iter_mut().zip(&self.damping).zip(ahead) {
+                *next -= rate * rate * order * c * v;
             }
+        }
+        let forces = self.modal_force.iter().zip(&self.stiffness);
+        for ((next, x), (force, w)) in next.iter_mut().zip(here).zip(forces) {
+            *next = share * ((*next - force) * slower - w * x);
         }
     }
 

@@ -50,6 +50,9 @@ pub struct PowerSeries {
     /// Displacements of one power; and which forces follow which displacements, with which factors, force
     /// after force.
     pub(super) displaced: Vec<f64>,
+    /// Points whose forces have a coefficient of one power, and what these are for the modes.
+    pub(super) acting: Vec<(usize, f64)>,
+    pub(super) modal_force: Vec<f64>,
     pub(super) springs: Vec<(usize, usize, f64)>,
 }
 
@@ -80,6 +83,8 @@ impl PowerSeries {
             window: LONGEST,
             tried: [FRESH, LONGEST_MICROSLIP],
             displaced: Vec::new(),
+            acting: Vec::new(),
+            modal_force: Vec::new(),
             springs: Vec::new(),
         };
         series.set_rate(system, rate);
@@ -117,7 +122,7 @@ impl PowerSeries {
     }
 
     /// Whether the equations are not linear along the step.
-    pub(super) fn is_nonlinear(&self) -> bool {
+    pub(crate) fn is_nonlinear(&self) -> bool {
         !self.slides.is_empty() || !self.branches.is_empty()
     }
 

@@ -1,53 +1,89 @@
 //! Modes seen at the contacts: `u = B Φ η`, and `(B Φ)ᵀ f` back.
 
-/// Points whose displacements are summed side by side, in registers.
-const LANES: usize = 16;
+/// Numbers that are summed side by side, in registers: many, and what is left over.
+const WIDE: usize = 16;
+const NARROW: usize = 4;
 
-/// B Φ in blocks of points, each mode after mode, for products with vector instructions.
+/// B Φ in blocks, for products with vector instructions.
 #[derive(Debug, Clone)]
 pub(super) struct Projection {
-    modes: usize,
-    /// Block after block, [`LANES`] points per mode; missing points are zeros.
-    blocks: Vec<f64>,
+    /// Columns of blocks of points, mode after mode, and of blocks of modes, point after point.
+    to_points: Blocks,
+    to_modes: Blocks,
+}
+
+/// A matrix in blocks of rows, each column after column; missing rows are zeros.
+#[derive(Debug, Clone)]
+struct Blocks {
+    columns: usize,
+    wide: Vec<f64>,
+    narrow: Vec<f64>,
+}
+
+impl Blocks {
+    fn new(rows: usize, columns: usize, entry: impl Fn(usize, usize) -> f64) -> Self {
+        let whole = rows / WIDE * WIDE;
+        let blocks = |first: usize, end: usize, lanes: usize| -> Vec<f64> {
+            let padded = |i: usize, j: usize| if i < rows { entry(i, j) } else { 0.0 };
+            let starts = (first..end).step_by(lanes);
+            starts
+                .flat_map(|start| (0..columns).map(move |j| (start, j)))
+                .flat_map(|(start, j)| (start..start + lanes).map(move |i| (i, j)))
+                .map(|(i, j)| padded(i, j))
+                .collect()
+        };
+        Self { columns, wide: blocks(0, whole, WIDE), narrow: blocks(whole, rows, NARROW) }
+    }
+
+    /// The product with a vector of which these columns alone are not 0, in whole blocks.
+    fn product(&self, vector: impl Iterator<Item = (usize, f64)> + Clone, out: &mut Vec<f64>) {
+        out.clear();
+        pulp::Arch::new().dispatch(|| {
+            sums::<WIDE>(&self.wide, self.columns, vector.clone(), out);
+            sums::<NARROW>(&self.narrow, self.columns, vector, out);
+        });
+    }
+}
+
+/// Products of blocks of so many rows.
+#[inline(always)]
+fn sums<const LANES: usize>(
+    blocks: &[f64],
+    columns: usize,
+    vector: impl Iterator<Item = (usize, f64)> + Clone,
+    out: &mut Vec<f64>,
+) {
+    for block in blocks.chunks_exact((LANES * columns).max(1)) {
+        let mut sums = [0.0; LANES];
+        for (j, x) in vector.clone() {
+            let column = &block[j * LANES..(j + 1) * LANES];
+            for (sum, b) in sums.iter_mut().zip(column) {
+                *sum += b * x;
+            }
+        }
+        out.extend_from_slice(&sums);
+    }
 }
 
 impl Projection {
     /// From the rows of B Φ, point after point.
     pub(super) fn new(rows: &[f64], modes: usize) -> Self {
         let points = rows.len() / modes.max(1);
-        let mut blocks = vec![0.0; points.next_multiple_of(LANES) * modes];
-        for (point, row) in rows.chunks_exact(modes.max(1)).enumerate() {
-            let first = point / LANES * LANES * modes + point % LANES;
-            let places = blocks[first..].iter_mut().step_by(LANES);
-            places.zip(row).for_each(|(place, b)| *place = *b);
+        Self {
+            to_points: Blocks::new(points, modes, |point, mode| rows[point * modes + mode]),
+            to_modes: Blocks::new(modes, points, |mode, point| rows[point * modes + mode]),
         }
-        Self { modes, blocks }
     }
 
     /// Displacements of all points, in whole blocks; each is the sum over the modes in their order.
     pub(super) fn displacements(&self, modal: &[f64], out: &mut Vec<f64>) {
-        out.clear();
-        pulp::Arch::new().dispatch(|| {
-            for block in self.blocks.chunks_exact(LANES * self.modes) {
-                let mut sums = [0.0; LANES];
-                for (row, x) in block.chunks_exact(LANES).zip(modal) {
-                    for (sum, b) in sums.iter_mut().zip(row) {
-                        *sum += b * x;
-                    }
-                }
-                out.extend_from_slice(&sums);
-            }
-        });
+        self.to_points.product(modal.iter().copied().enumerate(), out);
     }
-}
 
-/// Takes the modal forces `f b` of a point off.
-pub(super) fn take_off(shape: &[f64], force: f64, out: &mut [f64]) {
-    pulp::Arch::new().dispatch(|| {
-        for (out, b) in out.iter_mut().zip(shape) {
-            *out -= b * force;
-        }
-    });
+    /// Modal forces of forces at some points, in whole blocks.
+    pub(super) fn modal_forces(&self, forces: &[(usize, f64)], out: &mut Vec<f64>) {
+        self.to_modes.product(forces.iter().copied(), out);
+    }
 }
 
 #[cfg(test)]
@@ -55,14 +91,22 @@ mod tests {
     use super::*;
 
     #[test]
-    fn displacements_are_the_products_with_the_rows() {
-        for (points, modes) in [(1, 1), (3, 5), (16, 2), (37, 7)] {
+    fn products_are_those_with_the_rows() {
+        for (points, modes) in [(1, 1), (3, 5), (16, 2), (37, 71)] {
             let rows: Vec<f64> = (0..points * modes).map(|i| (i as f64).sin()).collect();
+            let projection = Projection::new(&rows, modes);
             let modal: Vec<f64> = (0..modes).map(|i| (i as f64).cos()).collect();
             let mut found = Vec::new();
-            Projection::new(&rows, modes).displacements(&modal, &mut found);
+            projection.displacements(&modal, &mut found);
             for (row, found) in rows.chunks_exact(modes).zip(&found) {
                 let expected: f64 = row.iter().zip(&modal).map(|(b, x)| b * x).sum();
+                assert_eq!(*found, expected);
+            }
+            let forces: Vec<(usize, f64)> =
+                (0..points).step_by(2).map(|i| (i, (i as f64).cos())).collect();
+            projection.modal_forces(&forces, &mut found);
+            for (mode, found) in found.iter().enumerate().take(modes) {
+                let expected: f64 = forces.iter().map(|(i, f)| rows[i * modes + mode] * f).sum();
                 assert_eq!(*found, expected);
             }
         }

@@ -39,7 +39,7 @@ struct Equations {
     scale: Vec<f64>,
     /// Strains that move or are disturbed.
     strains: Vec<usize>,
-    /// R, strains × modes.
+    /// `R / s`, strains × modes.
     rates: Mat<f64>,
     /// `(Ω² + G R) / s`, modes × modes.
     stiffness: Mat<f64>,
@@ -59,7 +59,7 @@ impl Transition<'_> {
         total: &mut Mat<f64>,
         known: &mut Propagators,
     ) {
-        let (modes, first) = (self.weight.len(), 2 * self.weight.len());
+        let first = 2 * self.weight.len();
         let mut disturbed = vec![false; total.nrows()];
         let mut columns = Vec::with_capacity(total.ncols());
         for j in 0..total.ncols() {
@@ -71,30 +71,26 @@ impl Transition<'_> {
         }
         let own = self.equations(regime, &disturbed[first..]);
         let factors: Vec<f64> = own.scale.iter().zip(&self.weight).map(|(s, w)| s / w).collect();
-        let mut states = Mat::from_fn(first, columns.len(), |i, j| {
-            total[(i, columns[j])] * factors.get(i).unwrap_or(&1.0)
-        });
-        let mut inputs = Mat::from_fn(own.strains.len(), columns.len(), |i, j| {
-            total[(first + own.strains[i], columns[j])]
-        });
-        let by_state =
-            Mat::from_fn(own.strains.len(), modes, |i, j| own.rates[(i, j)] / own.scale[j]);
-        let moved = |sign: f64, states: &Mat<f64>, strains: &mut Mat<f64>| {
-            let displaced = states.get(..modes, ..);
-            matmul(strains.as_mut(), Accum::Add, by_state.as_ref(), displaced, sign, Par::Seq);
-        };
-        moved(-1.0, &states, &mut inputs);
-        states = known.advance(&own, regime, duration, states, &inputs);
-        moved(1.0, &states, &mut inputs);
+        let mut states = Mat::zeros(first, columns.len());
+        let mut inputs = Mat::zeros(own.strains.len(), columns.len());
         for (j, &column) in columns.iter().enumerate() {
-            let out = total.col_as_slice_mut(column);
-            let after = states.col_as_slice(j).iter().enumerate();
-            out.iter_mut()
-                .zip(after)
-                .for_each(|(out, (i, y))| *out = y / factors.get(i).unwrap_or(&1.0));
-            for (strain, g) in own.strains.iter().zip(inputs.col_as_slice(j)) {
-                out[first + strain] = *g;
-            }
+            let (motion, strains) = total.col_as_slice(column).split_at(first);
+            let state = states.col_as_slice_mut(j);
+            state.copy_from_slice(motion);
+            state.iter_mut().zip(&factors).for_each(|(x, factor)| *x *= factor);
+            let inputs = inputs.col_as_slice_mut(j).iter_mut().zip(&own.strains);
+            inputs.for_each(|(g, strain)| *g = strains[*strain]);
+        }
+        own.add_strains(-1.0, &states, &mut inputs);
+        states = known.advance(&own, regime, duration, states, &inputs);
+        own.add_strains(1.0, &states, &mut inputs);
+        let factors: Vec<f64> = factors.iter().map(|factor| 1.0 / factor).collect();
+        for (j, &column) in columns.iter().enumerate() {
+            let (motion, strains) = total.col_as_slice_mut(column).split_at_mut(first);
+            motion.copy_from_slice(states.col_as_slice(j));
+            motion.iter_mut().zip(&factors).for_each(|(x, factor)| *x *= factor);
+            let inputs = inputs.col_as_slice(j).iter().zip(&own.strains);
+            inputs.for_each(|(g, strain)| strains[*strain] = *g);
         }
     }
 
@@ -144,6 +140,7 @@ impl Transition<'_> {
         }
         for (j, s) in scale.iter().enumerate() {
             stiffness.col_as_slice_mut(j).iter_mut().for_each(|k| *k /= s);
+            moves.col_as_slice_mut(j).iter_mut().for_each(|rate| *rate /= s);
         }
         Equations {
             scale,
@@ -172,11 +169,17 @@ impl Transition<'_> {
 }
 
 impl Equations {
+    /// Adds the strains of displacements to others, with a sign.
+    fn add_strains(&self, sign: f64, states: &Mat<f64>, strains: &mut Mat<f64>) {
+        let displaced = states.get(..self.scale.len(), ..);
+        matmul(strains.as_mut(), Accum::Add, self.rates.as_ref(), displaced, sign, Par::Seq);
+    }
+
     /// Derivatives of states, one column each, times a duration.
     fn rates_of(&self, states: &Mat<f64>, duration: f64) -> Mat<f64> {
         let modes = self.scale.len();
         let mut out = Mat::<f64>::zeros(states.nrows(), states.ncols());
-        let (mut upper, mut lower) = out.split_at_row_mut(modes);
+        let mut lower = out.get_mut(modes.., ..);
         let (displacement, velocity) = states.split_at_row(modes);
         let minus = -duration;
         matmul(
@@ -191,12 +194,14 @@ impl Equations {
             matmul(lower.as_mut(), Accum::Add, damping.as_ref(), velocity, minus, Par::Seq);
         }
         for j in 0..states.ncols() {
-            for i in 0..modes {
-                upper[(i, j)] = duration * self.scale[i] * velocity[(i, j)];
+            let velocity = &states.col_as_slice(j)[modes..];
+            let (upper, lower) = out.col_as_slice_mut(j).split_at_mut(modes);
+            for ((upper, s), v) in upper.iter_mut().zip(&self.scale).zip(velocity) {
+                *upper = duration * s * v;
             }
             if let Damping::Diagonal(damping) = &self.damping {
-                for (i, c) in damping.iter().enumerate() {
-                    lower[(i, j)] -= duration * c * velocity[(i, j)];
+                for ((lower, c), v) in lower.iter_mut().zip(damping).zip(velocity) {
+                    *lower -= duration * c * v;
                 }
             }
         }

@@ -284,37 +284,35 @@ impl<'a> Transition<'a> {
             return;
         };
         let row = onset.point - own.points.start;
-        let holds = own.elastic.rank() == 1
-            && onset.jump[onset.point] == -1.0
-            && onset.slope.iter().all(|slope| *slope == 0.0);
-        let alone = if holds { own.strains.clone() } else { 0..0 };
+        let mut jumps = Vec::new();
+        for body in bodies {
+            let jump = &onset.jump[body.points.clone()];
+            if jump.iter().any(|jump| *jump != 0.0) {
+                jumps.extend(body.strains.clone().zip(body.elastic.strains(jump)));
+            }
+        }
+        // The strains of what a normal force presses are those of single points.
+        let mut vanish = Vec::new();
+        for point in &onset.released {
+            let row = point - own.points.start;
+            let held = (0..own.elastic.rank()).filter(|a| own.elastic.root()[(row, *a)] != 0.0);
+            vanish.extend(held.map(|a| own.strains.start + a));
+        }
+        // Else rounding would leave something of a force that a constant limit holds.
+        let constant = onset.slope.iter().all(|slope| *slope == 0.0);
+        if constant && own.elastic.rank() == 1 && onset.jump[onset.point] == -1.0 {
+            vanish.push(own.strains.start);
+        }
         for column in 0..total.ncols() {
-            let mut force: f64 = (0..own.elastic.rank())
-                .map(|a| {
-                    own.elastic.root()[(row, a)] * total[(first + own.strains.start + a, column)]
-                })
-                .sum();
-            for (j, slope) in onset.slope.iter().enumerate() {
-                force += slope / self.weight[j] * total[(j, column)];
+            let total = total.col_as_slice_mut(column);
+            let strains = &total[first + own.strains.start..first + own.strains.end];
+            let roots = (0..own.elastic.rank()).map(|a| own.elastic.root()[(row, a)]);
+            let mut force: f64 = roots.zip(strains).map(|(root, g)| root * g).sum();
+            for ((slope, weight), x) in onset.slope.iter().zip(&self.weight).zip(&*total) {
+                force += slope / weight * x;
             }
-            for body in bodies {
-                // What rounding would leave of a force that a constant limit holds.
-                if body.strains == alone {
-                    total[(first + body.strains.start, column)] = 0.0;
-                    continue;
-                }
-                let jump = body.elastic.strains(&onset.jump[body.points.clone()]);
-                for (a, jump) in body.strains.clone().zip(jump) {
-                    total[(first + a, column)] += jump * force;
-                }
-            }
-            // The strains of what a normal force presses are those of single points.
-            for point in &onset.released {
-                let row = point - own.points.start;
-                for a in (0..own.elastic.rank()).filter(|a| own.elastic.root()[(row, *a)] != 0.0) {
-                    total[(first + own.strains.start + a, column)] = 0.0;
-                }
-            }
+            jumps.iter().for_each(|(strain, jump)| total[first + strain] += jump * force);
+            vanish.iter().for_each(|strain| total[first + strain] = 0.0);
         }
     }
 }

@@ -17,7 +17,7 @@ impl PeriodicOrbits<'_> {
 
     /// By Newton's method from harmonic balance over spans that begin later: unknowns at the time 0.
     pub(super) fn shoot_later(
-        &self,
+        &mut self,
         shooting: &mut Shooting<'_>,
         omega: f64,
         iterations: &mut usize,

@@ -8,7 +8,9 @@ use super::settings::OrbitSettings;
 use super::shooting::Shooting;
 use super::sliders::{choose, Assumption, Chosen};
 use super::start::{later, start_of};
-use crate::balance::{ForcedBalance, HarmonicChoice, Kept, Point, PointStatus, Progress, Settings};
+use crate::balance::{
+    ForcedBalance, HarmonicChoice, Kept, Point, PointStatus, Progress, Settings, Unknowns,
+};
 use crate::contact::Residual;
 use crate::model::Model;
 use crate::motion::{ModalSystem, State};
@@ -42,6 +44,9 @@ pub struct PeriodicOrbits<'a> {
     /// By how much sliders are displaced, see [`Assumption`].
     pub(super) sliders: Vec<f64>,
     pub(super) everywhere: Vec<usize>,
+    /// The last balance that an orbit began with, and whether a neighbour was no better.
+    balanced: Option<Unknowns>,
+    beyond: bool,
     pub(super) quadrature: Quadrature,
     pub(super) progress: &'a Progress<'a>,
     pub(super) kept: Option<&'a Kept<Orbit>>,
@@ -57,6 +62,8 @@ impl<'a> Plan<'a> {
             everywhere: (0..self.system.modes()).collect(),
             plan: self,
             sliders: Vec::new(),
+            balanced: None,
+            beyond: false,
             quadrature: Quadrature::default(),
             progress,
             kept: None,
@@ -269,7 +276,7 @@ impl<'a> PeriodicOrbits<'a> {
         let settings = self.newton();
         let mut iterations = 0;
         let mut y = match neighbour {
-            Some(state) => self.nearer_start(shooting, omega, shooting.unknowns(state)),
+            Some(state) => self.nearer_start(shooting, omega, state),
             None => shooting.unknowns(&self.harmonic_start(omega, 0.0)),
         };
         // Any other start has other sliders.
@@ -315,20 +322,28 @@ impl<'a> PeriodicOrbits<'a> {
     }
 
     /// A start, or that of harmonic balance if it is better: where but one motion is possible, and each
-    /// further step of Newton's method is dear.
-    fn nearer_start(&self, shooting: &mut Shooting<'_>, omega: f64, y: Vec<f64>) -> Vec<f64> {
+    /// further step of Newton's method is dear. Behind a point at which it was, neighbours are not asked.
+    fn nearer_start(
+        &mut self,
+        shooting: &mut Shooting<'_>,
+        omega: f64,
+        neighbour: &State,
+    ) -> Vec<f64> {
         let misses = |shooting: &mut Shooting<'_>, y: &[f64]| {
             let mut residual = vec![0.0; y.len()];
             shooting.residual(y, &mut residual);
             norm(&residual) / norm(y)
         };
-        let own = misses(shooting, &y);
-        let near = own <= NEAR || shooting.price() < 1.0;
+        let y = shooting.unknowns(neighbour);
+        let own = if self.beyond { f64::INFINITY } else { misses(shooting, &y) };
+        let near = own <= NEAR || (!self.beyond && shooting.price() < 1.0);
         if near || !self.plan.unique {
             return y;
         }
         let other = shooting.unknowns(&self.harmonic_start(omega, 0.0));
-        if misses(shooting, &other) < own {
+        let balanced = misses(shooting, &other);
+        if balanced < own {
+            self.beyond = balanced <= NEAR;
             other
         } else {
             y
@@ -337,7 +352,7 @@ impl<'a> PeriodicOrbits<'a> {
 
     /// The state of a harmonic balance of low order at an angle of the period; rest where it
     /// has none.
-    pub(super) fn harmonic_start(&self, omega: f64, angle: f64) -> State {
+    pub(super) fn harmonic_start(&mut self, omega: f64, angle: f64) -> State {
         let rest = State::rest(&self.plan.system);
         let forced = self.plan.model.compliance().forced_harmonics();
         let highest = forced.last().copied().unwrap_or(1).max(START_HARMONICS);
@@ -351,8 +366,11 @@ impl<'a> PeriodicOrbits<'a> {
         else {
             return rest;
         };
-        balance = balance.watched(self.progress);
-        match balance.solve(omega, None) {
+        balance = balance.watched(self.progress).unjudged();
+        let known = self.balanced.take().filter(|_| self.plan.unique);
+        let found = balance.solve(omega, known.as_ref());
+        self.balanced = found.as_ref().ok().and_then(|point| point.unknowns().cloned());
+        match found {
             Ok(point) if point.status == PointStatus::Converged => start_of(
                 self.plan.with_history.as_deref().unwrap_or(self.plan.model),
                 &self.plan.system,

@@ -7,9 +7,11 @@ use crate::motion::{ContactState, Event, Extremes, FlowEvent, FlowSegment, Modal
 use faer::{c64, Mat};
 use std::f64::consts::TAU;
 
-/// Quadrature nodes per segment beyond those that the highest harmonic needs: power series of an segment
-/// have few significant terms.
+/// Quadrature nodes of a segment in which contacts slip little by little or in a plane, beyond those that the
+/// highest harmonic needs: its power series has few significant terms.
 const NODES: usize = 20;
+/// Error of the quadrature of a wave, relative to it.
+const ROUNDING: f64 = 1e-18;
 /// Distance from a limit, relative to it, at which a contact touches it, …
 const TOUCHES: f64 = 1e-7;
 /// … and share of a period that is but an instant: one of slip by rounding lasts as long as its root.
@@ -92,7 +94,7 @@ impl<'a> Survey<'a> {
     fn integrate(&mut self, segment: &FlowSegment<'_>) {
         let (system, modes, points) = (self.system, self.system.modes(), self.system.points());
         let angle = self.omega * segment.duration();
-        let count = NODES + (0.5 * angle * self.orders as f64).ceil() as usize;
+        let count = nodes(segment, angle * self.orders as f64);
         let rule = self.quadrature.rule(count).to_vec();
         let values = segment.series.values(rule.iter().map(|(x, _)| x * segment.length));
         let slips = segment.regime.points.iter().any(|state| state.slips());
@@ -255,6 +257,22 @@ impl<'a> Survey<'a> {
     fn summaries(&self) -> Vec<PointSummary> {
         self.system.contact_summaries(&self.contacts)
     }
+}
+
+/// Nodes that a segment needs over which the highest harmonic turns by an angle. No wave in a linear motion
+/// turns by more than the length of its series, and energies by twice that: with m nodes the quadrature of
+/// a wave that turns by 4 x has an error of about `x^2m / (2m)!`.
+fn nodes(segment: &FlowSegment<'_>, angle: f64) -> usize {
+    if segment.series.is_nonlinear() {
+        return NODES + (0.5 * angle).ceil() as usize;
+    }
+    let x = 0.25 * (segment.length + segment.length.max(angle));
+    let (mut count, mut error) = (0, 1.0);
+    while error > ROUNDING {
+        count += 1;
+        error *= x * x / ((2 * count) * (2 * count - 1)) as f64;
+    }
+    count
 }
 
 /// Adds the friction work of a short time with these velocities and forces of the points.

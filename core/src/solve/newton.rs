@@ -55,6 +55,9 @@ const SERVES_AGAIN: f64 = 1e-3;
 /// stiff contacts are small differences, which an error of the unknowns reaches many times over.
 const OF_KEPT: f64 = 1e-2;
 
+/// Share of a step that a further one would not leave but by rounding.
+const ROUNDED: f64 = 0.3;
+
 /// Most further steps that are taken with one Jacobian.
 const MOST_KEPT: f64 = 8.0;
 
@@ -230,6 +233,10 @@ impl<'a, S: System> Newton<'a, S> {
             return Some(Outcome::Converged);
         }
         let before = std::mem::replace(&mut self.within, left <= self.tolerance);
+        // Within the tolerance a step that leaves as much as it takes is rounding.
+        if before && kept && !self.within && contraction > ROUNDED {
+            return Some(Outcome::Converged);
+        }
         if self.within {
             // Newton's own last step would leave hardly more than rounding. One with a Jacobian
             // kept leaves what the step that would follow tells, at the price of a substitution;
