@@ -184,32 +184,36 @@ impl PowerSeries {
         let (known, rest) = self.modal.split_at_mut((power + 2) * n);
         let next = &mut rest[..n];
         let (here, ahead) = (&known[power * n..(power + 1) * n], &known[(power + 1) * n..]);
+        self.acting.clear();
+        for (point, force) in self.force.chunks_exact(DEGREE + 1).enumerate() {
+            if force[power] != 0.0 {
+                self.acting.push((point, force[power]));
+            }
+        }
+        system.projection.modal_forces(&self.acting, &mut self.modal_force);
+        let (order, slower) = ((power + 1) as f64, 1.0 / (rate * rate));
+        let share = 1.0 / (order * (order + 1.0));
         next.fill(0.0);
+        next.iter_mut().zip(&self.modal_force).for_each(|(next, force)| *next -= force);
         for ((_, load), (_, [re, im])) in system.loads.iter().zip(loads) {
             for (next, p) in next.iter_mut().zip(load) {
                 *next += p.re * re - p.im * im;
             }
         }
-        self.acting.clear();
-        let forces = self.force[power..].iter().step_by(DEGREE + 1).copied().enumerate();
-        self.acting.extend(forces.filter(|(_, force)| *force != 0.0));
-        system.projection.modal_forces(&self.acting, &mut self.modal_force);
-        let (order, slower) = ((power + 1) as f64, 1.0 / (rate * rate));
-        let share = 1.0 / (order * (order + 1.0));
         if let Damping::Full(damping) = &system.damping {
             for (j, v) in ahead.iter().enumerate() {
                 for (i, next) in next.iter_mut().enumerate() {
                     *next -= rate * order * damping[(i, j)] * v;
                 }
             }
-        } else {
-            for ((next, c), v) in next.iter_mut().zip(&self.damping).zip(ahead) {
-                *next -= rate * rate * order * c * v;
+            for ((next, x), w) in next.iter_mut().zip(here).zip(&self.stiffness) {
+                *next = share * (*next * slower - w * x);
             }
+            return;
         }
-        let forces = self.modal_force.iter().zip(&self.stiffness);
-        for ((next, x), (force, w)) in next.iter_mut().zip(here).zip(forces) {
-            *next = share * ((*next - force) * slower - w * x);
+        let own = self.stiffness.iter().zip(&self.damping);
+        for ((next, (x, v)), (w, c)) in next.iter_mut().zip(here.iter().zip(ahead)).zip(own) {
+            *next = share * (*next * slower - w * x - order * c * v);
         }
     }
 

@@ -1,13 +1,15 @@
 //! Modes seen at the contacts: `u = B Φ η`, and `(B Φ)ᵀ f` back.
 
 /// Numbers that are summed side by side, in registers: many, and what is left over.
-const WIDE: usize = 16;
-const NARROW: usize = 4;
+const WIDE: usize = 32;
+const NARROW: usize = 8;
+/// Numbers of a matrix that is not worth vector instructions.
+const SMALL: usize = 64;
 
 /// B Φ in blocks, for products with vector instructions.
 #[derive(Debug, Clone)]
 pub(super) struct Projection {
-    /// Columns of blocks of points, mode after mode, and of blocks of modes, point after point.
+    /// Blocks of points, mode after mode, and blocks of modes, point after point.
     to_points: Blocks,
     to_modes: Blocks,
 }
@@ -16,13 +18,17 @@ pub(super) struct Projection {
 #[derive(Debug, Clone)]
 struct Blocks {
     columns: usize,
+    /// Whether it is too small for vector instructions: row after row.
+    plain: bool,
     wide: Vec<f64>,
     narrow: Vec<f64>,
 }
 
 impl Blocks {
     fn new(rows: usize, columns: usize, entry: impl Fn(usize, usize) -> f64) -> Self {
-        let whole = rows / WIDE * WIDE;
+        let plain = rows * columns <= SMALL;
+        let whole = if plain { 0 } else { rows / WIDE * WIDE };
+        let lanes = if plain { 1 } else { NARROW };
         let blocks = |first: usize, end: usize, lanes: usize| -> Vec<f64> {
             let padded = |i: usize, j: usize| if i < rows { entry(i, j) } else { 0.0 };
             let starts = (first..end).step_by(lanes);
@@ -32,36 +38,46 @@ impl Blocks {
                 .map(|(i, j)| padded(i, j))
                 .collect()
         };
-        Self { columns, wide: blocks(0, whole, WIDE), narrow: blocks(whole, rows, NARROW) }
+        Self { columns, plain, wide: blocks(0, whole, WIDE), narrow: blocks(whole, rows, lanes) }
     }
 
     /// The product with a vector of which these columns alone are not 0, in whole blocks.
     fn product(&self, vector: impl Iterator<Item = (usize, f64)> + Clone, out: &mut Vec<f64>) {
         out.clear();
+        if self.plain {
+            let rows = self.narrow.chunks_exact(self.columns.max(1));
+            out.extend(rows.map(|row| vector.clone().map(|(j, x)| row[j] * x).sum::<f64>()));
+            return;
+        }
         pulp::Arch::new().dispatch(|| {
-            sums::<WIDE>(&self.wide, self.columns, vector.clone(), out);
-            sums::<NARROW>(&self.narrow, self.columns, vector, out);
+            sums::<{ WIDE / 2 }>(&self.wide, self.columns, vector.clone(), out);
+            sums::<{ NARROW / 2 }>(&self.narrow, self.columns, vector, out);
         });
     }
 }
 
-/// Products of blocks of so many rows.
+/// Products of blocks of twice so many rows.
 #[inline(always)]
-fn sums<const LANES: usize>(
+fn sums<const HALF: usize>(
     blocks: &[f64],
     columns: usize,
     vector: impl Iterator<Item = (usize, f64)> + Clone,
     out: &mut Vec<f64>,
 ) {
-    for block in blocks.chunks_exact((LANES * columns).max(1)) {
-        let mut sums = [0.0; LANES];
+    for block in blocks.chunks_exact((2 * HALF * columns).max(1)) {
+        let (mut upper, mut lower) = ([0.0; HALF], [0.0; HALF]);
         for (j, x) in vector.clone() {
-            let column = &block[j * LANES..(j + 1) * LANES];
-            for (sum, b) in sums.iter_mut().zip(column) {
+            let column = &block[2 * HALF * j..2 * HALF * (j + 1)];
+            let (first, last) = column.split_at(HALF);
+            for (sum, b) in upper.iter_mut().zip(first) {
+                *sum += b * x;
+            }
+            for (sum, b) in lower.iter_mut().zip(last) {
                 *sum += b * x;
             }
         }
-        out.extend_from_slice(&sums);
+        out.extend_from_slice(&upper);
+        out.extend_from_slice(&lower);
     }
 }
 

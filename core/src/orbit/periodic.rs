@@ -20,8 +20,10 @@ use crate::Error;
 use faer::c64;
 use std::sync::Arc;
 
-/// Harmonics of the balance that a cold start comes from.
-const START_HARMONICS: usize = 9;
+/// Harmonics of the balance that a cold start comes from: at least, at most, and units of the fastest rate
+/// per period for each. Where passes along the orbit are long, more harmonics save some of them.
+const START_HARMONICS: [usize; 2] = [9, 25];
+const PER_HARMONIC: f64 = 100.0;
 /// Closing error, relative to the motion, of a start that needs no better one.
 const NEAR: f64 = 1e-4;
 /// Rounds of following the motion itself, and spans in the first: each round doubles them.
@@ -355,7 +357,10 @@ impl<'a> PeriodicOrbits<'a> {
     pub(super) fn harmonic_start(&mut self, omega: f64, angle: f64) -> State {
         let rest = State::rest(&self.plan.system);
         let forced = self.plan.model.compliance().forced_harmonics();
-        let highest = forced.last().copied().unwrap_or(1).max(START_HARMONICS);
+        let [least, most] = START_HARMONICS;
+        let turn = std::f64::consts::TAU * self.plan.system.rate(omega) / omega;
+        let suited = ((turn / PER_HARMONIC) as usize).clamp(least, most);
+        let highest = forced.last().copied().unwrap_or(1).max(suited);
         let settings = Settings {
             harmonics: HarmonicChoice::Fixed(highest),
             max_harmonics: highest,
