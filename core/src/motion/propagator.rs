@@ -13,8 +13,8 @@ use faer::{Accum, Mat, Par};
 
 /// Numbers of all exponentials that are kept.
 const ROOM: usize = 1 << 23;
-/// Change of a stretch, in units of the fastest rate, that a power series follows in fewer products than an
-/// exponential takes.
+/// Length of a stretch, or change of it, in units of the fastest rate, over which a power series takes fewer
+/// operations than an exponential.
 const CLOSE: f64 = 1.0;
 
 /// The exponential over a stretch.
@@ -232,6 +232,9 @@ impl Equations {
 
     /// Takes states a little further, or back, by a power series.
     fn correct(&self, states: &mut Mat<f64>, inputs: &Mat<f64>, duration: f64) {
+        if duration == 0.0 {
+            return;
+        }
         let modes = self.scale.len();
         let mut term = self.rates_of(states, duration);
         let driven = term.get_mut(modes.., ..);
@@ -260,6 +263,11 @@ impl Propagators {
         inputs: &Mat<f64>,
     ) -> Mat<f64> {
         let fastest = equations.scale.iter().fold(0.0_f64, |most, s| most.max(*s));
+        let mut states = states;
+        if duration * fastest <= CLOSE {
+            equations.correct(&mut states, inputs, duration);
+            return states;
+        }
         let close = |own: &&Propagator| {
             (own.duration - duration).abs() * fastest <= CLOSE
                 && own.points == regime.points
@@ -267,9 +275,7 @@ impl Propagators {
         };
         if let Some(own) = self.known.iter().find(close) {
             let mut states = own.exponential.applied(states.as_ref(), inputs.as_ref());
-            if own.duration != duration {
-                equations.correct(&mut states, inputs, duration - own.duration);
-            }
+            equations.correct(&mut states, inputs, duration - own.duration);
             return states;
         }
         let exponential = equations.exponential(duration);
