@@ -16,6 +16,8 @@ const ROOM: usize = 1 << 23;
 /// Length of a stretch, or change of it, in units of the fastest rate, over which a power series takes fewer
 /// operations than an exponential.
 const CLOSE: f64 = 1.0;
+/// Term of such a series, relative to the states, that is none.
+const ROUNDING: f64 = 1e-18;
 
 /// The exponential over a stretch.
 #[derive(Debug)]
@@ -239,11 +241,13 @@ impl Equations {
         let mut term = self.rates_of(states, duration);
         let driven = term.get_mut(modes.., ..);
         matmul(driven, Accum::Add, self.input.as_ref(), inputs.as_ref(), duration, Par::Seq);
+        // Terms fall at once: over a stretch this short the states keep their size.
+        let enough = ROUNDING * states.norm_l2();
         let mut power = 1.0;
         loop {
-            let size = term.norm_l2();
             *states += &term;
-            if size <= f64::EPSILON * 0.1 * states.norm_l2() || !size.is_finite() {
+            let size = term.norm_max();
+            if size <= enough || !size.is_finite() {
                 return;
             }
             power += 1.0;
