@@ -9,8 +9,6 @@ use super::polynomial::DEGREE;
 use super::power_series::{sum_of_products, PowerSeries, LONGEST_MICROSLIP};
 use super::sliding::{Slide, Swing};
 use super::state::State;
-use faer::linalg::matmul::matmul;
-use faer::{Accum, MatMut, MatRef, Par};
 
 /// Shortest step where contacts slip little by little, and passes over a step.
 const SHORTEST: f64 = 1e-9;
@@ -103,12 +101,8 @@ impl PowerSeries {
             })
             .collect();
         self.connect(system, regime);
-        // Where no force follows a displacement, these are one product.
-        let alone = self.springs.is_empty() && !self.is_nonlinear();
         for power in 0..=DEGREE {
-            if !alone {
-                self.expand_contacts(system, power);
-            }
+            self.expand_contacts(system, power);
             for branch in self.branches.iter().filter(|_| power > 0) {
                 let at = branch.point * (DEGREE + 1) + power;
                 self.force[at] = branch.force(power, &self.contact);
@@ -124,21 +118,6 @@ impl PowerSeries {
                 let step = *frequency / (power + 1) as f64;
                 (*re, *im) = (-step * *im, step * *re);
             }
-        }
-        if alone {
-            self.displace_contacts(system);
-        }
-    }
-
-    /// Coefficients of all displacements at once.
-    fn displace_contacts(&mut self, system: &ModalSystem) {
-        let (modes, powers, points) = (self.modes, DEGREE + 1, system.points());
-        let modal = MatRef::from_column_major_slice(&self.modal, modes, powers).transpose();
-        let shapes = MatRef::from_column_major_slice(&system.contacts, modes, points);
-        let out = MatMut::from_column_major_slice_mut(&mut self.contact, powers, points);
-        matmul(out, Accum::Replace, modal, shapes, 1.0, Par::Seq);
-        for point in (0..points).filter(|point| !system.is_felt(*point)) {
-            self.contact[point * powers..(point + 1) * powers].fill(0.0);
         }
     }
 
