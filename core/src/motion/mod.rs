@@ -7,6 +7,7 @@ mod bounds;
 mod branch_series;
 mod classification;
 mod damping;
+mod disturbed_stretch;
 mod expansion;
 mod exponential;
 mod flow;

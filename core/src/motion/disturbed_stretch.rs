@@ -1,0 +1,126 @@
+//! Disturbances of a motion over a stretch in which no contact changes its state.
+
+use super::modal_system::ContactState;
+use super::propagator::{Equations, Propagators};
+use super::transition::Transition;
+use faer::linalg::matmul::matmul;
+use faer::{Accum, Mat, Par};
+
+impl Transition<'_> {
+    /// Takes disturbances, column by column, over a duration \[s\]. Strains that neither move nor are
+    /// disturbed, those of contacts that slip under a constant limit, take no part.
+    pub(super) fn advance(
+        &self,
+        regime: &ContactState,
+        duration: f64,
+        total: &mut Mat<f64>,
+        known: &mut Propagators,
+    ) {
+        let first = 2 * self.weight.len();
+        let mut disturbed = vec![false; total.nrows()];
+        let mut columns = Vec::with_capacity(total.ncols());
+        for j in 0..total.ncols() {
+            let column = total.col_as_slice(j);
+            disturbed.iter_mut().zip(column).for_each(|(row, x)| *row |= *x != 0.0);
+            if column.iter().any(|x| *x != 0.0) {
+                columns.push(j);
+            }
+        }
+        let own = self.equations(regime, &disturbed[first..]);
+        let factors: Vec<f64> = own.scale.iter().zip(&self.weight).map(|(s, w)| s / w).collect();
+        let mut states = Mat::zeros(first, columns.len());
+        let mut inputs = Mat::zeros(own.strains.len(), columns.len());
+        for (j, &column) in columns.iter().enumerate() {
+            let (motion, strains) = total.col_as_slice(column).split_at(first);
+            let state = states.col_as_slice_mut(j);
+            state.copy_from_slice(motion);
+            state.iter_mut().zip(&factors).for_each(|(x, factor)| *x *= factor);
+            let inputs = inputs.col_as_slice_mut(j).iter_mut().zip(&own.strains);
+            inputs.for_each(|(g, strain)| *g = strains[*strain]);
+        }
+        own.add_strains(-1.0, &states, &mut inputs);
+        states = known.advance(&own, regime, duration, states, &inputs);
+        own.add_strains(1.0, &states, &mut inputs);
+        let factors: Vec<f64> = factors.iter().map(|factor| 1.0 / factor).collect();
+        for (j, &column) in columns.iter().enumerate() {
+            let (motion, strains) = total.col_as_slice_mut(column).split_at_mut(first);
+            motion.copy_from_slice(states.col_as_slice(j));
+            motion.iter_mut().zip(&factors).for_each(|(x, factor)| *x *= factor);
+            let inputs = inputs.col_as_slice(j).iter().zip(&own.strains);
+            inputs.for_each(|(g, strain)| strains[*strain] = *g);
+        }
+    }
+
+    /// The equations in one state of the contacts, with all strains that move or are disturbed.
+    fn equations(&self, regime: &ContactState, disturbed: &[bool]) -> Equations {
+        let (system, modes) = (self.system, self.weight.len());
+        let rates = self.strain_rates(regime);
+        let mut takes_part = disturbed.to_vec();
+        rates.iter().for_each(|(strain, _, _)| takes_part[*strain] = true);
+        let strains: Vec<usize> = (0..takes_part.len()).filter(|&i| takes_part[i]).collect();
+        let mut moves = Mat::<f64>::zeros(strains.len(), modes);
+        for (strain, point, rate) in &rates {
+            let Ok(row) = strains.binary_search(strain) else { continue };
+            for (j, b) in system.contact_shape(*point).iter().enumerate() {
+                moves[(row, j)] += rate * b;
+            }
+        }
+        let mut input = Mat::<f64>::zeros(modes, strains.len());
+        for body in system.bodies() {
+            for (own, strain) in body.strains.clone().enumerate() {
+                let Ok(place) = strains.binary_search(&strain) else { continue };
+                for (row, i) in body.points.clone().enumerate() {
+                    let root = body.elastic.root()[(row, own)];
+                    let shape = system.contact_shape(i);
+                    input
+                        .col_as_slice_mut(place)
+                        .iter_mut()
+                        .zip(shape)
+                        .for_each(|(a, b)| *a -= b * root);
+                }
+            }
+        }
+        let mut stiffness = Mat::<f64>::zeros(modes, modes);
+        matmul(stiffness.as_mut(), Accum::Replace, input.as_ref(), moves.as_ref(), -1.0, Par::Seq);
+        for &point in &system.normals {
+            let slope = regime.tangent[(point, point)];
+            let shape = system.contact_shape(point);
+            for (j, b) in shape.iter().enumerate().filter(|_| slope != 0.0) {
+                let column = stiffness.col_as_slice_mut(j).iter_mut();
+                column.zip(shape).for_each(|(k, own)| *k += own * slope * b);
+            }
+        }
+        let mut scale = Vec::with_capacity(modes);
+        for (j, (square, weight)) in system.omega_squared().iter().zip(&self.weight).enumerate() {
+            stiffness[(j, j)] += square;
+            scale.push(stiffness[(j, j)].abs().sqrt().max(*weight));
+        }
+        for (j, s) in scale.iter().enumerate() {
+            stiffness.col_as_slice_mut(j).iter_mut().for_each(|k| *k /= s);
+            moves.col_as_slice_mut(j).iter_mut().for_each(|rate| *rate /= s);
+        }
+        Equations {
+            scale,
+            strains,
+            rates: moves,
+            stiffness,
+            damping: system.damping.clone(),
+            input,
+        }
+    }
+
+    /// `g' = L⁺ T u'` as strains, points and factors that are not 0.
+    fn strain_rates(&self, regime: &ContactState) -> Vec<(usize, usize, f64)> {
+        let mut all = Vec::new();
+        for body in self.system.bodies() {
+            for i in body.points.clone() {
+                let column: Vec<f64> =
+                    body.points.clone().map(|r| regime.tangent[(r, i)]).collect();
+                let rates = body.elastic.strains(&column);
+                let own = body.strains.clone().zip(rates).map(|(strain, rate)| (strain, i, rate));
+                all.extend(own.filter(|(_, _, rate)| *rate != 0.0));
+            }
+        }
+        all
+    }
+}
