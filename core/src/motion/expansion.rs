@@ -191,15 +191,15 @@ impl PowerSeries {
             }
         }
         system.projection.modal_forces(&self.acting, &mut self.modal_force);
-        let (order, slower) = ((power + 1) as f64, 1.0 / (rate * rate));
+        let (order, square) = ((power + 1) as f64, rate * rate);
         let share = 1.0 / (order * (order + 1.0));
         next.fill(0.0);
-        next.iter_mut().zip(&self.modal_force).for_each(|(next, force)| *next -= force);
         for ((_, load), (_, [re, im])) in system.loads.iter().zip(loads) {
             for (next, p) in next.iter_mut().zip(load) {
                 *next += p.re * re - p.im * im;
             }
         }
+        next.iter_mut().zip(&self.modal_force).for_each(|(next, force)| *next -= force);
         if let Damping::Full(damping) = &system.damping {
             for (j, v) in ahead.iter().enumerate() {
                 for (i, next) in next.iter_mut().enumerate() {
@@ -207,13 +207,13 @@ impl PowerSeries {
                 }
             }
             for ((next, x), w) in next.iter_mut().zip(here).zip(&self.stiffness) {
-                *next = share * (*next * slower - w * x);
+                *next = share * (*next / square - w * x);
             }
             return;
         }
         let own = self.stiffness.iter().zip(&self.damping);
         for ((next, (x, v)), (w, c)) in next.iter_mut().zip(here.iter().zip(ahead)).zip(own) {
-            *next = share * (*next * slower - w * x - order * c * v);
+            *next = share * (*next / square - w * x - order * c * v);
         }
     }
 
