@@ -251,13 +251,27 @@ impl LoopMemory {
     /// The unknowns behind a piece, with those at its start.
     pub(super) fn behind(&self, piece: usize, start: &[f64]) -> Vec<f64> {
         let first = start.len() - PLACES * self.scale.len();
+        self.numbers_behind(piece, |contact, turn| {
+            let own = &start[first + contact * PLACES..first + (contact + 1) * PLACES];
+            let place = self.place(piece, contact, turn)?;
+            Some(own[..2 + place].iter().sum::<f64>() / self.scale[contact])
+        })
+    }
+
+    /// The unknowns behind a piece as the reversals of all pieces say.
+    pub(super) fn settled(&self, piece: usize) -> Vec<f64> {
+        self.numbers_behind(piece, |_, _| None)
+    }
+
+    /// The unknowns behind a piece; of reversals at their start, what is known of them.
+    fn numbers_behind(
+        &self,
+        piece: usize,
+        known: impl Fn(usize, &Reversal) -> Option<f64>,
+    ) -> Vec<f64> {
         let mut unknowns = Vec::with_capacity(PLACES * self.scale.len());
         for (contact, (list, scale)) in self.lists[piece + 1].iter().zip(&self.scale).enumerate() {
-            let own = &start[first + contact * PLACES..first + (contact + 1) * PLACES];
-            let at = |turn: &Reversal| match self.place(piece, contact, turn) {
-                Some(place) => own[..2 + place].iter().sum::<f64>() / scale,
-                None => turn.at,
-            };
+            let at = |turn: &Reversal| known(contact, turn).unwrap_or(turn.at);
             let outermost = list.outermost.map(|[high, low]| [at(&high), at(&low)]);
             let [origin, ..] = self.origin(contact, outermost);
             let mut block = [0.0; PLACES];

@@ -71,7 +71,31 @@ pub(super) fn halved(shooting: &mut Shooting<'_>, starts: &[f64]) -> Option<Vec<
         all.extend_from_slice(start);
         all.extend(shooting.image(start)?);
     }
+    settle_memory(shooting, &mut all)?;
     Some(all)
+}
+
+/// Has starts remember what stands behind the segment before. What the flow itself remembers there may be
+/// the same motion in other numbers: it closes a loop at its own end, or just not.
+pub(super) fn settle_memory(shooting: &mut Shooting<'_>, starts: &mut [f64]) -> Option<()> {
+    let (size, all) = (shooting.coordinates.size(), shooting.size());
+    if all == size {
+        return Some(());
+    }
+    let count = starts.len() / all;
+    for (number, start) in starts.chunks_exact(all).enumerate() {
+        shooting.narrow(number, count);
+        shooting.image(start)?;
+    }
+    shooting.memory.join()?;
+    for number in 0..count {
+        let side = if shooting.symmetric && number + 1 == count { -1.0 } else { 1.0 };
+        let next = (number + 1) % count * all;
+        let numbers = shooting.memory.settled(number);
+        let own = starts[next + size..next + all].iter_mut();
+        own.zip(numbers).for_each(|(to, own)| *to = side * own);
+    }
+    Some(())
 }
 
 /// How many segments suit a motion.

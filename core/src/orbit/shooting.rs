@@ -28,7 +28,7 @@ pub(super) struct Shooting<'a> {
     pub(super) idle: usize,
     pub(super) half_wave: bool,
     /// Whether segments are those of half a period.
-    symmetric: bool,
+    pub(super) symmetric: bool,
     /// Symmetry of a travelling wave, and what it does to the coordinates.
     rotation: Option<(Rotation, Mat<f64>)>,
     period: f64,
@@ -45,7 +45,7 @@ pub(super) struct Shooting<'a> {
     /// Steps of the flow that it took.
     steps: usize,
     /// What contacts without sliders remember.
-    memory: LoopMemory,
+    pub(super) memory: LoopMemory,
     /// State after the span.
     pub(super) end: Option<State>,
     /// Derivative of the image, and whether it is that of an evaluation before the last one.

@@ -7,7 +7,7 @@
 
 use super::limit_cycle::OrbitCurve;
 use crate::motion::{FlowEvent, Turn};
-use crate::orbit::segments::follow;
+use crate::orbit::segments::settle_memory;
 use crate::solve::norm;
 
 /// Distance of the begin from the nearest jump, relative to the largest there is, below which it moves.
@@ -55,7 +55,7 @@ impl OrbitCurve<'_> {
     /// The same motion with segments that begin so much later, in lengths of one.
     pub(super) fn begun(&self, z: &[f64], later: f64) -> Option<Vec<f64>> {
         let [.., omega, value] = *z else { return None };
-        let mut moved = self.with_shooting(z, |member, shooting, y| {
+        let mut moved = self.with_shooting(z, |_, shooting, y| {
             let [size, _] = self.state_size();
             let count = y.len() / size;
             let mut moved = Vec::with_capacity(z.len());
@@ -63,12 +63,7 @@ impl OrbitCurve<'_> {
                 shooting.narrow(number, count);
                 moved.extend(shooting.later(start, later, &mut |_, _| {})?);
             }
-            // Of the period before counts what stands behind the segment before.
-            let memory = shooting.coordinates.size();
-            for (number, one) in follow(member, shooting, &moved, false)?.iter().enumerate() {
-                let next = (number + 1) % count * size;
-                moved[next + memory..next + size].copy_from_slice(&one.image[memory..]);
-            }
+            settle_memory(shooting, &mut moved)?;
             Some(moved)
         })?;
         moved.extend([omega, value]);
