@@ -21,44 +21,6 @@ fn marched(case: &Case, samples: usize) -> SlipLoad {
     load(&sampled, motion(&case.table, &case.displacement), false)
 }
 
-/// Steps of differences, which err too: by their order, by rounding, and where an event lies within them.
-const DIFFERENCES: [f64; 5] = [1e-5, 1e-4, 1e-6, 3e-4, 1e-7];
-
-/// Difference between the tangent and the differences that agree with it best.
-fn tangent_error(case: &Case, residual: Residual) -> f64 {
-    let mut least = f64::INFINITY;
-    for step in DIFFERENCES {
-        if least > 1e-8 {
-            least = least.min(tangent_error_by(case, residual, step));
-        }
-    }
-    least
-}
-
-fn tangent_error_by(case: &Case, residual: Residual, step: f64) -> f64 {
-    let size = case.displacement.len();
-    let at = |u: &[f64], tangent: bool| {
-        load(exact(&case.law), Motion { residual, ..motion(&case.table, u) }, tangent)
-    };
-    let tangent = at(&case.displacement, true).tangent;
-    let step = step * largest(&case.displacement);
-    let mut error = 0.0_f64;
-    for j in 0..size {
-        let moved = |by: f64| {
-            let mut moved = case.displacement.clone();
-            moved[j] += by * step;
-            at(&moved, false).value
-        };
-        // Fourth order.
-        let (near, far) = ([moved(1.0), moved(-1.0)], [moved(2.0), moved(-2.0)]);
-        for i in 0..size {
-            let slope = (8.0 * (near[0][i] - near[1][i]) - (far[0][i] - far[1][i])) / (12.0 * step);
-            error = error.max((tangent[i * size + j] - slope).abs());
-        }
-    }
-    error / largest(&tangent)
-}
-
 fn check_marches(directions: usize, seed: u64, cases: usize, samples: usize, gate: f64) {
     let mut random = Random(seed);
     let mut compared = 0;
@@ -86,26 +48,6 @@ fn check_marches(directions: usize, seed: u64, cases: usize, samples: usize, gat
     assert!(worst < gate && compared > 2 * cases / 3, "{worst:.1e} in {compared}");
 }
 
-/// Share of the cases within 1e-8, and the worst of them: differences have rounding of their own.
-fn check_tangents(directions: usize, seed: u64, cases: usize, share: f64, gate: f64) {
-    let mut random = Random(seed);
-    let residuals = [Residual::Centred, Residual::FromRest, Residual::Value(0.1)];
-    let mut errors: Vec<f64> = (0..cases)
-        .map(|n| {
-            let case = random_case(&mut random, directions, 1 + n % 9);
-            let error = tangent_error(&case, residuals[n % 3]);
-            if error > gate {
-                println!("{n}: {error:.1e} {:?}", case.law);
-            }
-            error
-        })
-        .collect();
-    errors.sort_by(f64::total_cmp);
-    let at = |share: f64| errors[((cases - 1) as f64 * share) as usize];
-    println!("median {:.1e}, 95 % {:.1e}, worst {:.1e}", at(0.5), at(0.95), at(1.0));
-    assert!(at(share) < 1e-8 && at(1.0) < gate, "{:?}", &errors[cases * 9 / 10..]);
-}
-
 #[test]
 fn one_direction_agrees_with_a_fine_march() {
     check_marches(1, 41, 150, 1 << 16, 1e-6);
@@ -114,16 +56,6 @@ fn one_direction_agrees_with_a_fine_march() {
 #[test]
 fn two_directions_agree_with_a_fine_march() {
     check_marches(2, 71, 150, 1 << 14, 1e-5);
-}
-
-#[test]
-fn the_tangent_in_one_direction_is_that_of_differences() {
-    check_tangents(1, 43, 500, 1.0, 1e-8);
-}
-
-#[test]
-fn the_tangent_in_two_directions_is_that_of_differences() {
-    check_tangents(2, 73, 500, 0.94, 3e-6);
 }
 
 /// Friction work and mean, first cosine and sine of both tractions along an ellipse: half-axes and

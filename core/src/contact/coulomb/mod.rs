@@ -15,6 +15,7 @@ mod period;
 mod plane;
 mod play;
 mod slip;
+mod slip_ends;
 mod step;
 mod variation;
 

@@ -19,8 +19,10 @@ use crate::contact::{Coulomb, Residual};
 const COARSE_LAPS: usize = 4;
 /// Change of the slider over a coarse lap, relative to the limit, that needs no other.
 const COARSE: f64 = 1e-3;
-/// Correction of the slider, relative to the limit, that leaves the lap as it is.
-const EXACT: f64 = 1e-10;
+/// Correction of the slider, relative to the limit, that leaves the lap and its derivative as they are.
+const EXACT: f64 = 1e-13;
+/// Correction after which a lap has all digits that rounding leaves it.
+const NEARLY: f64 = 1e-10;
 /// Laps by Newton's method; after them, the march alone.
 const NEWTON_LAPS: usize = 12;
 /// Determinant of `1 − P`, with the derivative P of a lap in its start, below which the slip of the lap
@@ -164,6 +166,7 @@ impl Period<'_> {
     ) -> Option<Cycle> {
         let end = theta + self.drive.harmonics().span();
         let (mut last, mut hints) = (false, Vec::new());
+        let mut before = f64::INFINITY;
         for lap in 0..MOST_LAPS {
             let mut march = March::new(self.drive, plane, grid, self.rates && last);
             march.resolved = if last { RESOLVED } else { ROUGHLY };
@@ -183,7 +186,8 @@ impl Period<'_> {
             let by = inverse.map(|row| row[0] * residual[0] + row[1] * residual[1]);
             let size = by[0].hypot(by[1]).max(residual[0].hypot(residual[1]));
             let carried = last && (march.coefficients || !self.rates);
-            if carried && (size <= EXACT * plane.scale || lap + 1 == MOST_LAPS) {
+            let settled = size <= EXACT * plane.scale || before <= NEARLY * plane.scale;
+            if carried && (settled || lap + 1 == MOST_LAPS) {
                 march.correct(by);
                 let start = self.rates.then(|| start_rate(&slider, inverse, width));
                 return Some(march.into_cycle(start));
@@ -193,6 +197,7 @@ impl Period<'_> {
             let shrinks = slopes.iter().flatten().fold(0.0_f64, |most, p| most.max(p.abs()));
             let left = 10.0 * size * size / plane.scale * shrinks.min(1.0);
             last = left <= EXACT * plane.scale || lap + 2 == MOST_LAPS;
+            before = size;
             hints = march.hints(if last { RESOLVED } else { ROUGHLY });
             let newton = lap < NEWTON_LAPS && by.iter().all(|by| by.is_finite());
             let step = if newton { by } else { residual };

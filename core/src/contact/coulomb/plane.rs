@@ -9,7 +9,7 @@ use super::cycle::{Cycle, State, Stretch};
 use super::drive::Drive;
 use super::grid::{excess, Grid};
 use super::panel::{Panel, RESOLVED};
-use super::slip::{differentiated, Plane};
+use super::slip::Plane;
 use crate::contact::transitions::root;
 
 /// Excess over the limit, relative to it, that is none.
@@ -113,26 +113,6 @@ impl<'a> March<'a> {
         rate[width - 2] = 1.0;
         rate[2 * width - 1] = 1.0;
         Slider { position, rate }
-    }
-
-    /// The slider where the contact closes. It has followed until then.
-    pub(super) fn closing(&self, theta: f64) -> Slider {
-        let (pull, [_, growth]) = self.drive.at(theta);
-        let width = self.width();
-        let mut rate = vec![0.0; 2 * width];
-        if self.coefficients {
-            let slots = self.drive.harmonics().slots();
-            let mut basis = vec![0.0; slots];
-            self.drive.harmonics().basis(theta, &mut basis);
-            for (i, rate) in rate.chunks_exact_mut(width).enumerate() {
-                let by_limit = -pull[i][1] / (self.drive.friction * growth);
-                for (j, b) in basis.iter().enumerate() {
-                    rate[i * slots + j] = *b;
-                    rate[2 * slots + j] = by_limit * b;
-                }
-            }
-        }
-        Slider { position: [pull[0][0], pull[1][0]], rate }
     }
 
     /// Takes a slider from which the cone does not reach to the nearest from which it does.
@@ -319,82 +299,10 @@ impl<'a> March<'a> {
         }
         if theta > start {
             self.leave(theta, angle, &rate, slider);
+            if theta < end {
+                self.stop(theta, angle, &rate, slider);
+            }
         }
         theta
-    }
-
-    /// Direction of the traction where slip begins, with its derivative. The moving angle adds nothing
-    /// to it: φ' and the direction of `K − s` turn equally fast there.
-    fn onset(&self, theta: f64, slider: &Slider, closes: bool) -> (f64, Vec<f64>) {
-        let harmonics = self.drive.harmonics();
-        let slots = harmonics.slots();
-        let width = self.width();
-        let (pull, [_, growth]) = self.drive.at(theta);
-        let mut rate = vec![0.0; width];
-        let (angle, size) = if closes {
-            let speed = pull[0][1].hypot(pull[1][1]);
-            (pull[1][1].atan2(pull[0][1]), speed)
-        } else {
-            let [x, y] = [0, 1].map(|i| pull[i][0] - slider.position[i]);
-            (y.atan2(x), x.hypot(y))
-        };
-        let across = [-angle.sin(), angle.cos()];
-        if !closes {
-            let (x, y) = slider.rate.split_at(width);
-            for (rate, (x, y)) in rate.iter_mut().zip(x.iter().zip(y)) {
-                *rate = -(across[0] * x + across[1] * y) / size;
-            }
-        }
-        if self.coefficients {
-            let mut basis = vec![0.0; slots];
-            harmonics.basis(theta, &mut basis);
-            let mut by_limit = 0.0;
-            let mut by_pull = basis.clone();
-            if closes {
-                // φ follows the direction of motion, from K'·e⊥ = M φ' = 0.
-                differentiated(self.drive, &basis, &mut by_pull);
-                let curvature = [0, 1].map(|i| harmonics.jet(self.drive.pull(i), theta)[2]);
-                let turned = (across[0] * curvature[0] + across[1] * curvature[1]) / size;
-                let growth = self.drive.friction * growth;
-                by_limit = -turned / (growth + size);
-            }
-            for (j, by_pull) in by_pull.iter().enumerate() {
-                rate[j] += across[0] * by_pull / size;
-                rate[slots + j] += across[1] * by_pull / size;
-            }
-            if closes {
-                for (j, b) in basis.iter().enumerate().take(self.drive.limit_columns()) {
-                    rate[2 * slots + j] += by_limit * b;
-                }
-            }
-        }
-        (angle, rate)
-    }
-
-    /// The slider where slip ends: `s = K − M e`, stationary there.
-    fn leave(&self, theta: f64, angle: f64, rate: &[f64], slider: &mut Slider) {
-        let harmonics = self.drive.harmonics();
-        let slots = harmonics.slots();
-        let (pull, [pressing, _]) = self.drive.at(theta);
-        let limit = self.drive.friction * pressing;
-        let (sin, cos) = angle.sin_cos();
-        let (along, across) = ([cos, sin], [-sin, cos]);
-        let width = self.width();
-        let mut basis = vec![0.0; slots];
-        harmonics.basis(theta, &mut basis);
-        for (i, own) in slider.rate.chunks_exact_mut(width).enumerate() {
-            slider.position[i] = pull[i][0] - limit * along[i];
-            own.iter_mut().zip(rate).for_each(|(own, rate)| *own = -limit * across[i] * rate);
-            if !self.coefficients {
-                continue;
-            }
-            for (j, b) in basis.iter().enumerate() {
-                own[i * slots + j] += b;
-            }
-            let varies = self.drive.pressing.is_some();
-            for (j, b) in basis.iter().enumerate().take(self.drive.limit_columns()) {
-                own[2 * slots + j] -= along[i] * if varies { *b } else { 1.0 };
-            }
-        }
     }
 }
