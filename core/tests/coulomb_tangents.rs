@@ -191,7 +191,7 @@ fn check(
 
 #[test]
 fn contacts_in_space_with_few_harmonics() {
-    let (seen, left_out) = check(1907, 480, in_space);
+    let (seen, left_out) = check(1907, 400, in_space);
     assert!([Doing::Open, Doing::Sticks, Doing::Slips].iter().all(|doing| seen.contains(doing)));
     assert!(left_out <= 2, "{left_out}");
 }
@@ -204,6 +204,6 @@ fn contacts_in_space_with_many_harmonics() {
 
 #[test]
 fn contacts_in_one_direction() {
-    let (_, left_out) = check(43, 480, |random, n| random_case(random, 1, 1 + n % 9));
+    let (_, left_out) = check(43, 300, |random, n| random_case(random, 1, 1 + n % 9));
     assert!(left_out <= 5, "{left_out}");
 }

@@ -20,7 +20,7 @@ const COARSE_LAPS: usize = 4;
 /// Change of the slider over a coarse lap, relative to the limit, that needs no other.
 const COARSE: f64 = 1e-3;
 /// Correction of the slider, relative to the limit, that leaves the lap and its derivative as they are.
-const EXACT: f64 = 1e-13;
+const EXACT: f64 = 1e-11;
 /// Correction after which a lap has all digits that rounding leaves it.
 const NEARLY: f64 = 1e-10;
 /// Laps by Newton's method; after them, the march alone.
