@@ -249,6 +249,7 @@ def test_the_newest_position_wins(session):
     [
         ({"slip_force": -5.0}, "contact 1: slip_force = -5.0 must not be negative"),
         ({"level": 0.0}, "levels"),
+        ({"stiffness": 1e308}, "entries of absurd size"),
     ],
 )
 @pytest.mark.slow

@@ -10,6 +10,8 @@ use faer::{Mat, MatRef};
 const ASYMMETRY: f64 = 1e-8;
 /// Rows and columns of a tile.
 const TILE: usize = 32;
+/// Rounding of the stiffest mode, over the structure's own stiffness, that leaves three digits of this.
+const HIDDEN: f64 = 1e-3;
 /// Contacts from which on the numbers in their rows are counted.
 const MANY: usize = 24;
 
@@ -129,9 +131,26 @@ impl Structure {
     /// Modes with another stiffness, such as that of the stuck structure.
     ///
     /// # Errors
-    /// The eigenvalue iteration fails.
+    /// The eigenvalue iteration fails, or the other stiffness is so large that its rounding hides the
+    /// structure's own.
     pub(super) fn modes_at(&self, stiffness: MatRef<'_, f64>) -> Result<StuckModes<f64>, Error> {
-        StuckModes::new(self.mass(), stiffness, &self.massless)
+        let stuck = StuckModes::new(self.mass(), stiffness, &self.massless)?;
+        let with_mass = (0..self.dofs()).filter(|i| !self.massless.contains(i));
+        let own = with_mass.map(|i| self.stiffness[(i, i)] / self.mass[(i, i)]).fold(0.0, f64::max);
+        let squared = &stuck.modes.omega_squared;
+        let fastest = squared.last().copied().unwrap_or(0.0);
+        let rounding = f64::EPSILON * fastest;
+        // Where contacts hold every mode, there is nothing beside them.
+        let slow = squared.first().is_some_and(|slowest| *slowest <= own.max(rounding / HIDDEN));
+        if own > 0.0 && slow && (rounding > HIDDEN * own || !fastest.is_finite()) {
+            return Err(Error::value(
+                "frequency of the stuck structure, squared",
+                fastest,
+                "contact stiffness has entries of absurd size: beside them that of the structure is \
+                 rounded away; 1e12 times as stiff as the structure is as good as rigid",
+            ));
+        }
+        Ok(stuck)
     }
 
     /// Whether a law made the damping, one that couples none of the modes without contacts.
