@@ -57,13 +57,24 @@ const UNEXPLAINED: f64 = 0.3;
 /// begins or ceases to slip: at nearly rigid contacts that go on slipping it overshoots tenfold.
 const TRUSTED: f64 = 2.0;
 
+/// Newton steps of an extended balance.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Steps {
+    /// One: a second cannot be afforded.
+    One,
+    /// One, of which is asked whether contacts keep their states.
+    OneInState,
+    /// Two, unless the first explains the motion of all contacts.
+    Two,
+}
+
 /// The extended balance of a solution. It follows from the model and the solution and not from the
 /// way to it: at a frequency by itself all methods and starts estimate alike.
+#[derive(Clone, Copy)]
 pub(super) struct Extension {
     /// Its highest harmonic.
     pub(super) highest: usize,
-    /// Whether a second step can be afforded.
-    second_step: bool,
+    pub(super) steps: Steps,
     /// What its changes count, so that they stand for those of harmonics that it cannot afford as well.
     unseen: f64,
 }
@@ -104,7 +115,13 @@ impl Extension {
         // Friction forces have kinks: their harmonics fall with the square of the order.
         let sum = |to: usize| 1.0 / (highest + least) as f64 - 1.0 / (to + least) as f64;
         let unseen = sum(wanted.max(order)) / sum(order);
-        Self { highest: order, second_step: farthest.is_some(), unseen }
+        let steps = if farthest.is_some() { Steps::Two } else { Steps::One };
+        Self { highest: order, steps, unseen }
+    }
+
+    /// Its first step alone, as follows a neighbour; nothing if it has no more.
+    pub(super) fn beside(self) -> Option<Self> {
+        (self.steps == Steps::Two).then_some(Self { steps: Steps::OneInState, ..self })
     }
 
     /// Not beyond a harmonic.
@@ -174,12 +191,14 @@ pub(super) struct Estimate {
     /// Sum over all harmonics of the change that it would bring to each observed DOF \[m\]; infinite
     /// where a discarded harmonic meets a resonance that nothing damps.
     pub(super) errors: Vec<f64>,
-    /// By how much its second step was to multiply them, if it was made and contacts kept their states.
-    pub(super) growth: Option<Vec<f64>>,
+    /// The same after the first step.
+    pub(super) first: Vec<f64>,
+    /// Whether it makes no contact begin or cease to slip.
+    pub(super) keeps_states: bool,
 }
 
-/// The estimate of a solution; `solved` are the equations that were solved, if they are at hand, and
-/// `growth` that of a point beside, if it is known. Nothing if the analysis is to end.
+/// The estimate of a solution; `solved` are the equations that were solved, if they are at hand. Nothing
+/// if the analysis is to end.
 #[allow(clippy::too_many_arguments)]
 pub(super) fn estimate(
     model: &Model,
@@ -190,10 +209,11 @@ pub(super) fn estimate(
     point: &Point,
     solved: Option<&Condensed<'_>>,
     extension: &Extension,
-    growth: Option<&[f64]>,
     interrupted: &dyn Fn() -> bool,
 ) -> Result<Option<Estimate>, Error> {
-    let infinite = Ok(Some(Estimate { errors: vec![f64::INFINITY; observe.len()], growth: None }));
+    let [zero, infinite] = [0.0, f64::INFINITY].map(|error| vec![error; observe.len()]);
+    let infinite = Estimate { first: infinite.clone(), errors: infinite, keeps_states: false };
+    let infinite = Ok(Some(infinite));
     let mut extended = Condensed::new(model, table, residual, false);
     extended.watch(interrupted);
     if extended.set_omega_beside(point.omega, solved).is_err() {
@@ -202,9 +222,7 @@ pub(super) fn estimate(
     let mut x = solution.recast(table.harmonics());
     let (mut defect, mut step) = (vec![0.0; x.len()], vec![0.0; x.len()]);
     extended.residual(&x, &mut defect);
-    let mut first = Vec::new();
-    let mut found = Estimate { errors: vec![0.0_f64; observe.len()], growth: None };
-    let mut trusted = TRUSTED;
+    let mut found = Estimate { errors: zero.clone(), first: zero, keeps_states: true };
     for last in [false, true] {
         if extended.interrupted() {
             return Ok(None);
@@ -218,36 +236,31 @@ pub(super) fn estimate(
         x.iter_mut().zip(&step).for_each(|(x, s)| *x += s);
         let changes = changes(&extended, &x, &slip_load, observe, point)?;
         if last {
+            let trusted = if found.keeps_states { TRUSTED } else { f64::INFINITY };
             let errors = found.errors.iter_mut().zip(changes);
             errors.for_each(|(error, change)| *error = error.max(change.min(trusted * *error)));
             break;
         }
-        (found.errors, first) = (changes.clone(), changes);
-        if !extension.second_step {
-            break;
-        }
-        if let Some(growth) = growth.filter(|_| extended.keeps_states(&x)) {
-            found.errors.iter_mut().zip(growth).for_each(|(error, by)| *error *= by);
-            first.clear();
-            break;
+        (found.first, found.errors) = (changes.clone(), changes);
+        match extension.steps {
+            Steps::One => break,
+            Steps::OneInState => {
+                found.keeps_states = extended.keeps_states(&x);
+                break;
+            }
+            Steps::Two => {}
         }
         let slipped = slipping(&extended);
         let before = by_point(&defect, table);
         extended.residual(&x, &mut defect);
-        if slipped != slipping(&extended) {
-            trusted = f64::INFINITY;
-        }
+        found.keeps_states = slipped == slipping(&extended);
         let mut after = by_point(&defect, table).into_iter().zip(before);
         if after.all(|(after, before)| after <= UNEXPLAINED * before) {
             break;
         }
     }
-    if extension.second_step && trusted.is_finite() && !first.is_empty() {
-        let growth = found.errors.iter().zip(first);
-        let growth = growth.map(|(error, first)| if *error > first { error / first } else { 1.0 });
-        found.growth = Some(growth.map(|by| if by.is_finite() { by } else { 1.0 }).collect());
-    }
-    found.errors.iter_mut().for_each(|error| *error *= extension.unseen);
+    let all = found.errors.iter_mut().chain(&mut found.first);
+    all.for_each(|error| *error *= extension.unseen);
     Ok(Some(found))
 }
 

@@ -58,11 +58,40 @@ impl ForcedBalance<'_> {
         if slipping == 0 {
             return Ok(true);
         }
+        let observed = self.observe.len();
+        let whole = Extension::new(harmonics, point.omega, &self.model, slipping, observed);
+        // Where harmonics are chosen, every estimate decides by itself.
+        let beside = whole.beside().filter(|_| self.control.is_fixed());
+        if let Some((first, growth)) = beside.zip(self.neighbour.served(point)) {
+            let estimate = self.extended(harmonics, x, solved, point, first)?;
+            let Some(estimate) = estimate else { return Ok(false) };
+            if estimate.keeps_states {
+                let errors = estimate.errors.iter().zip(growth).map(|(error, by)| error * by);
+                point.error_estimate = errors.collect();
+                return Ok(true);
+            }
+        }
+        let estimate = self.extended(harmonics, x, solved, point, whole)?;
+        let Some(Estimate { errors, first, keeps_states }) = estimate else { return Ok(false) };
+        let told = beside.is_some() && keeps_states;
+        self.neighbour.learn(point, &errors, told.then_some(&first[..]));
+        point.error_estimate = errors;
+        Ok(true)
+    }
+
+    /// What an extended balance says of a solution; nothing, and no estimate of the point, if the analysis
+    /// is to end.
+    fn extended(
+        &mut self,
+        harmonics: &Harmonics,
+        x: &[f64],
+        solved: Option<&Condensed<'_>>,
+        point: &mut Point,
+        extension: Extension,
+    ) -> Result<Option<Estimate>, Error> {
         // Few samples, as long as nobody insists on them, must not hide harmonics.
         let climb = self.control.samples_climb();
         let resolved = if climb { usize::MAX } else { self.evaluated(point.samples)?.resolves() };
-        let observed = self.observe.len();
-        let extension = Extension::new(harmonics, point.omega, &self.model, slipping, observed);
         let extension = extension.within(resolved);
         let order = extension.highest;
         let least = if climb { (8 * (order + 1)).next_power_of_two() } else { 0 };
@@ -71,34 +100,20 @@ impl ForcedBalance<'_> {
         let solution = Unknowns { harmonics: harmonics.clone(), values: x.to_vec() };
         let residual = self.settings.residual;
         let ask = self.interruption();
-        // Where harmonics are chosen, every estimate decides by itself.
-        let fixed = self.control.is_fixed();
-        let growth = fixed.then(|| self.neighbour.growth(point)).flatten();
-        let estimate = estimate(
-            &model,
-            &table,
-            residual,
-            &solution,
-            self.observe,
-            point,
-            solved,
-            &extension,
-            growth.as_deref(),
-            &ask,
+        let observe = self.observe;
+        let found = estimate(
+            &model, &table, residual, &solution, observe, point, solved, &extension, &ask,
         )?;
-        let Some(Estimate { errors, growth: learnt }) = estimate else {
-            point.error_estimate = vec![f64::NAN; observed];
-            return Ok(false);
+        let Some(mut found) = found else {
+            point.error_estimate = vec![f64::NAN; observe.len()];
+            return Ok(None);
         };
-        if growth.is_none() || learnt.is_some() {
-            self.neighbour.learn(point, learnt.unwrap_or_default());
-        }
         // DOFs without mass move with kinks: harmonics fall with the square of their order, and the error
         // with the first power of H, so that the extended balance has a known share of it.
-        let massless = !self.model.structure().massless().is_empty();
-        let unseen =
-            if massless { order as f64 / (order - harmonics.highest()) as f64 } else { 1.0 };
-        point.error_estimate = errors.into_iter().map(|error| unseen * error).collect();
-        Ok(true)
+        if !self.model.structure().massless().is_empty() {
+            let unseen = order as f64 / (order - harmonics.highest()) as f64;
+            found.errors.iter_mut().chain(&mut found.first).for_each(|error| *error *= unseen);
+        }
+        Ok(Some(found))
     }
 }

@@ -12,28 +12,31 @@ const NEAR: f64 = 0.02;
 /// Points in a row that the second step at one before them serves.
 const SERVED: usize = 7;
 
-/// The point at which an estimate made its second step last.
+/// The point at which an estimate was made as a whole last.
 #[derive(Default)]
 pub(super) struct Neighbour {
     omega: f64,
     harmonics: usize,
-    /// Error after the second step over that after the first, of each observed DOF; empty where it is
-    /// not known.
+    /// Its error over that after the first step, of each observed DOF; empty where it is not known.
     growth: Vec<f64>,
     served: usize,
 }
 
 impl Neighbour {
-    /// What the second step would add at a point beside.
-    pub(super) fn growth(&mut self, point: &Point) -> Option<Vec<f64>> {
+    /// By how much a whole estimate would be above the first step at a point beside.
+    pub(super) fn served(&mut self, point: &Point) -> Option<Vec<f64>> {
         let near = (self.omega - point.omega).abs() <= NEAR * self.omega;
         let suits = near && self.harmonics == point.harmonics && self.served < SERVED;
         self.served += 1;
         (suits && !self.growth.is_empty()).then(|| self.growth.clone())
     }
 
-    /// Learns from a point at which the second step was made.
-    pub(super) fn learn(&mut self, point: &Point, growth: Vec<f64>) {
+    /// Learns from a point at which an estimate was made as a whole, with the errors after its first step
+    /// if they tell of others.
+    pub(super) fn learn(&mut self, point: &Point, errors: &[f64], first: Option<&[f64]>) {
+        let growth = errors.iter().zip(first.unwrap_or_default());
+        // 0 over 0 is no growth.
+        let growth = growth.map(|(whole, first)| (whole / first).max(1.0)).collect();
         *self = Self { omega: point.omega, harmonics: point.harmonics, growth, served: 0 };
     }
 }

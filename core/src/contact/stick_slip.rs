@@ -29,6 +29,19 @@ pub(super) struct Slip {
     pub(super) travel: f64,
 }
 
+/// A displacement at the crest of its fundamental and half a period later: it ranges at least as far.
+pub(super) fn at_crest(motion: Motion<'_>) -> [f64; 2] {
+    let harmonics = motion.table.harmonics();
+    let pairs = motion.displacement[harmonics.offset()..].chunks_exact(2);
+    let crest = pairs.clone().next().map_or(0.0, |pair| pair[1].atan2(pair[0]));
+    let mut parts = [harmonics.mean(motion.displacement), 0.0];
+    for (&order, pair) in harmonics.oscillating().iter().zip(pairs) {
+        let (sine, cosine) = (order as f64 * crest).sin_cos();
+        parts[order % 2] += pair[0] * cosine + pair[1] * sine;
+    }
+    [parts[0] + parts[1], parts[0] - parts[1]]
+}
+
 /// A displacement from turning point to turning point, which all elements on it share.
 #[derive(Debug)]
 pub(super) struct Path<'a> {

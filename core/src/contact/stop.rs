@@ -9,7 +9,7 @@ use super::law::HarmonicForce;
 use super::parameter::number;
 use super::return_map::ReturnMapJacobian;
 use super::spring::{harmonics_of_a_spring, law_of_a_spring};
-use super::stick_slip::{crossing, Path};
+use super::stick_slip::{at_crest, crossing, Path};
 use super::{ContactLaw, Motion, Parameter, Parameters, Phase, PointState, PointSummary, SlipLoad};
 use crate::fourier::IntervalSums;
 use crate::Error;
@@ -167,6 +167,11 @@ impl ContactLaw for Stop {
 
     fn with_scaled_forces(&self, factor: f64) -> Box<dyn ContactLaw> {
         Box::new(Self { gap: factor * self.gap, ..*self })
+    }
+
+    fn surely_slips(&self, motion: Motion<'_>) -> Option<bool> {
+        let touches = at_crest(motion).map(|u| u > self.gap);
+        (touches[0] != touches[1]).then_some(true)
     }
 
     fn parameters(&self) -> Vec<Parameter> {

@@ -14,7 +14,7 @@ use crate::contact::parameter::numbers;
 use crate::contact::return_map::ReturnMapJacobian;
 use crate::contact::slider_integrals::add_slipping;
 use crate::contact::slip_element::{Element, SlipElement as _};
-use crate::contact::stick_slip::{Path, StickSlipIntervals};
+use crate::contact::stick_slip::{at_crest, Path, StickSlipIntervals};
 use crate::contact::{
     ContactLaw, Describing, Held, Motion, Parameter, Parameters, Phase, PointSummary, Residual,
     Slider, SlipLoad,
@@ -158,9 +158,8 @@ impl ContactLaw for Jenkins {
         if self.surely_sticks(motion) {
             return Some(false);
         }
-        let mut pairs = motion.displacement[motion.table.harmonics().offset()..].chunks_exact(2);
-        let fundamental = (1.0 - ROUNDING) * pairs.next().map_or(0.0, norm);
-        let least = fundamental - pairs.map(norm).sum::<f64>();
+        let [high, low] = at_crest(motion);
+        let least = 0.5 * (1.0 - ROUNDING) * (high - low).abs();
         let slips = |slider: &Slider| {
             slider.slip_force > 0.0 && slider.stiffness * least > slider.slip_force
         };

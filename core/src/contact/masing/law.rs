@@ -12,7 +12,7 @@ use crate::contact::backbone::{Backbone, LoadingCurve};
 use crate::contact::law::HarmonicForce;
 use crate::contact::parameter::{number, numbers};
 use crate::contact::return_map::ReturnMapJacobian;
-use crate::contact::stick_slip::Path;
+use crate::contact::stick_slip::{at_crest, Path};
 use crate::contact::{
     ContactLaw, Describing, Motion, Parameter, Parameters, Phase, PointSummary, Residual, SlipLoad,
 };
@@ -220,6 +220,11 @@ impl ContactLaw for Masing {
             _ => backbone = Arc::new(backbone.with_number(index - 2, value)?),
         }
         Ok(Box::new(Self::of(self.name, stiffness, slip_force, backbone)?))
+    }
+
+    fn surely_slips(&self, motion: Motion<'_>) -> Option<bool> {
+        let [high, low] = at_crest(motion);
+        (self.curve.loss(0.5 * (high - low).abs()).slope > 0.0).then_some(true)
     }
 
     fn closed_form(&self) -> Option<&dyn HarmonicForce> {
