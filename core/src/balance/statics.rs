@@ -26,6 +26,8 @@ const ITERATIONS: usize = 40;
 const SOLVED: f64 = 1e-13;
 /// Displacements over those of the stuck structure beyond which nothing holds it.
 pub(super) const FREE: f64 = 1e9;
+/// Steps that go so far, after which a body is taken as free: a single one may be a jump.
+const ADRIFT: usize = 4;
 
 /// How raising the static loads has ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -179,7 +181,7 @@ impl<'a> Loading<'a> {
         // What presses without load, as an interference does, comes first.
         let Some(unloaded) = self.solve(&self.level, 0.0) else { return self.failure() };
         self.level = unloaded;
-        let mut step: f64 = 1.0;
+        let (mut step, mut adrift): (f64, usize) = (1.0, 0);
         while self.level.share < 1.0 {
             if !go_on(self.level.share) {
                 return RestStatus::NotComputed;
@@ -191,6 +193,11 @@ impl<'a> Loading<'a> {
             let to = if step >= 1.0 - self.level.share { 1.0 } else { self.level.share + step };
             match self.halves(to) {
                 Some((level, error)) if error <= ACCURACY || step <= SHORTEST => {
+                    // Rounding alone holds a body that contacts have let go.
+                    adrift += usize::from(self.goes_far(&level));
+                    if adrift == ADRIFT {
+                        return RestStatus::Free;
+                    }
                     self.level = level;
                     self.steps += 1;
                     step *= if error <= 0.1 * ACCURACY { 4.0 } else { 1.2 };
@@ -204,6 +211,12 @@ impl<'a> Loading<'a> {
 
     fn size(&self, u: &[f64]) -> f64 {
         norm(u).max(self.least)
+    }
+
+    /// Whether the load that a level adds moves the structure as if nothing held it.
+    fn goes_far(&self, level: &Level) -> bool {
+        let moved: Vec<f64> = level.u.iter().zip(&self.level.u).map(|(a, b)| a - b).collect();
+        norm(&moved) > FREE * (level.share - self.level.share) * norm(&self.stuck)
     }
 
     /// The level at a share of the load by two steps, and how far it is from that by one.
