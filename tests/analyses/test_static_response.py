@@ -173,3 +173,27 @@ def test_files_and_pictures(tmp_path):
     np.testing.assert_array_equal(again.contact_force("left"), result.contact_force("left"))
     heights = sorted(bar.get_height() for bar in result.plot().patches)
     assert heights[0] == pytest.approx(heights[-1])
+
+
+@pytest.mark.parametrize("seed", [7, 19])
+def test_a_body_that_only_rounding_holds_is_free(seed: int) -> None:
+    """Its eigenvalue of 0 is rounded: it had converged at 2e9 m, or stalled after 20 000 steps."""
+    rng = np.random.default_rng(seed)
+    shapes, _ = np.linalg.qr(rng.normal(size=(5, 5)))
+    stiffness = shapes @ np.diag([0.0, *rng.uniform(1e4, 9e4, 4)]) @ shapes.T
+    stiffness = 0.5 * (stiffness + stiffness.T)
+    dofs = [f"q{number}" for number in range(5)]
+    structure = ss.Structure(np.eye(5), stiffness, 1e-4 * stiffness, dofs)
+    pad = ss.Coulomb(
+        ["q0", "q1"],
+        normal=[0, 1],
+        friction=0.5,
+        tangential_stiffness=1e4,
+        normal_stiffness=3e4,
+        preload=1.0,
+    )
+    pushes = 5.0 * rng.normal(size=5)
+    loads = [ss.Force(dof, push, harmonic=0) for dof, push in zip(dofs, pushes, strict=True)]
+    rest = ss.static_response(ss.Model(structure, [pad], loads))
+    assert rest.status == "free"
+    assert rest.counters["steps"] < 100
