@@ -68,5 +68,7 @@ fn step_price(system: &ModalSystem) -> f64 {
     let (modes, points) = (system.modes() as f64, system.points() as f64);
     let damping = if system.is_diagonally_damped() { PER_MODE } else { PER_MODE + 2.0 * modes };
     // Modes give displacements and take forces; every point looks for its next event among all.
-    POWERS * (4.0 * modes * points + damping * modes + 4.0 * points * points)
+    let elements = 4.0 * modes * points + damping * modes + 4.0 * points * points;
+    // Slip in a plane is nine products of series.
+    POWERS * (elements + 9.0 * POWERS * system.planes().len() as f64)
 }

@@ -10,8 +10,8 @@ use crate::model::Model;
 use crate::motion::State;
 use std::cell::RefCell;
 
-/// Operations that the steps of one search may take: some tens of seconds.
-const PATIENCE: f64 = 4e10;
+/// Operations that the steps of one search may take: some seconds.
+const PATIENCE: f64 = 4e9;
 
 /// Finds exact orbits on demand.
 pub struct OrbitInitialGuess<'a> {
