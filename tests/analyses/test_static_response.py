@@ -197,3 +197,14 @@ def test_a_body_that_only_rounding_holds_is_free(seed: int) -> None:
     rest = ss.static_response(ss.Model(structure, [pad], loads))
     assert rest.status == "free"
     assert rest.counters["steps"] < 100
+
+
+@pytest.mark.parametrize("stiffness", [1e8, 1e12, 1e15])
+def test_a_rigid_contact_that_slips_leaves_the_body_to_its_springs(stiffness: float) -> None:
+    springs = [[2e3, -1e3], [-1e3, 1e3]]
+    structure = ss.Structure(np.eye(2), springs, np.eye(2), ["x", "y"])
+    pad = ss.Jenkins("x", stiffness=stiffness, slip_force=1.0)
+    model = ss.Model(structure, [pad], [ss.Force("x", 5.0, harmonic=0)])
+    rest = ss.static_response(model)
+    assert rest.status == "converged"
+    assert rest.displacement("x") == pytest.approx(4e-3, rel=1e-5)

@@ -213,10 +213,12 @@ impl<'a> Loading<'a> {
         norm(u).max(self.least)
     }
 
-    /// Whether the load that a level adds moves the structure as if nothing held it.
+    /// Whether the load that a level adds moves a structure that floats as if nothing held it.
     fn goes_far(&self, level: &Level) -> bool {
+        let free = self.model.compliance().free_frequencies();
+        let floats = matches!(free, [slow, .., fast] if slow * slow * FREE <= fast * fast);
         let moved: Vec<f64> = level.u.iter().zip(&self.level.u).map(|(a, b)| a - b).collect();
-        norm(&moved) > FREE * (level.share - self.level.share) * norm(&self.stuck)
+        floats && norm(&moved) > FREE * (level.share - self.level.share) * norm(&self.stuck)
     }
 
     /// The level at a share of the load by two steps, and how far it is from that by one.
