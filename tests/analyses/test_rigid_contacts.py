@@ -1,0 +1,40 @@
+"""Contacts so stiff that rounding hides the structure beside them."""
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+
+
+def chain(size: int, contacts: int, stiffness: float, *, proportional: bool) -> ss.Model:
+    """Return a chain whose contacts do not slip."""
+    springs = 2e4 * np.eye(size) - 1e4 * (np.eye(size, k=1) + np.eye(size, k=-1))
+    uneven = np.diag(np.random.default_rng(0).uniform(0.5, 2.0, size))
+    damping = ss.Rayleigh(mass=0.5, stiffness=1e-5) if proportional else uneven
+    dofs = [f"x{number}" for number in range(size)]
+    structure = ss.Structure(np.eye(size), springs, damping, dofs)
+    pads = [
+        ss.Jenkins(dofs[number], stiffness=stiffness, slip_force=1e3, name=f"pad {number}")
+        for number in range(1, 1 + contacts)
+    ]
+    return ss.Model(structure, pads, [ss.Force("x0", 3.0), ss.Force(dofs[-1], 3.0)])
+
+
+@pytest.mark.parametrize("proportional", [True, False])
+@pytest.mark.parametrize(("size", "contacts"), [(5, 1), (40, 3), (200, 130)])
+def test_rigid_contacts_hold_their_dofs_or_are_refused(
+    size: int, contacts: int, proportional: bool
+) -> None:
+    def ends(stiffness: float) -> list[float]:
+        model = chain(size, contacts, stiffness, proportional=proportional)
+        frf = ss.forced_response(model, [90.0], harmonics=3, stability=False)
+        assert frf.converged.all()
+        return [float(frf.amplitude(dof)[0]) for dof in (frf.dofs[0], frf.dofs[-1])]
+
+    # The distance from rigid falls with the stiffness, until rounding leaves but some digits.
+    assert ends(1e8) == pytest.approx(ends(1e11), rel=1e-3)
+    assert ends(1e11) == pytest.approx(ends(1e12), rel=1e-6)
+    assert ends(1e15) == pytest.approx(ends(1e12), rel=1e-3)
+    for absurd in (1e17, 1e100, 1e308):
+        with pytest.raises(ss.ModelError, match="entries of absurd size"):
+            ends(absurd)
