@@ -11,6 +11,8 @@ pub(super) type Lanes = [f64; NODES];
 /// Gauss-Legendre collocation on [0, 1].
 pub(super) struct Collocation {
     pub(super) node: Lanes,
+    /// From the node before, or from the start.
+    pub(super) gap: Lanes,
     pub(super) weight: Lanes,
     /// Integrals of every Lagrange polynomial up to the nodes.
     pub(super) integral: [Lanes; NODES],
@@ -65,7 +67,8 @@ impl Collocation {
             sign * ((1.0 - node[j] * node[j]) * weight[j]).sqrt()
         });
         let node = node.map(|x| 0.5 * (1.0 + x));
-        Self { node, weight, integral, tail, barycentric }
+        let gap = std::array::from_fn(|j| node[j] - if j > 0 { node[j - 1] } else { 0.0 });
+        Self { node, gap, weight, integral, tail, barycentric }
     }
 
     /// Integrals up to the nodes of the polynomial through values at them.

@@ -17,7 +17,7 @@ const ROUNDING: f64 = 1e-15;
 const SHRINKING: f64 = 1e-2;
 /// Last coefficients of the polynomial of φ that count as none, relative to the largest limit. Values
 /// at the end and integrals are good to the square of this.
-pub(super) const RESOLVED: f64 = 2e-10;
+pub(super) const RESOLVED: f64 = 2e-8;
 /// The same where the end alone matters.
 pub(super) const ROUGHLY: f64 = 1e-6;
 /// The same for what a panel can add to an integral, whatever its order.
@@ -80,8 +80,8 @@ impl Panel {
         let mut factors = panel.factors();
         let (mut last, mut shrunk) = (f64::INFINITY, 1.0_f64);
         for iteration in 0..STEPS {
-            // One matrix serves as long as the steps shrink fast.
-            if iteration > 0 && (shrunk.is_nan() || shrunk >= SHRINKING) {
+            // One matrix serves the first two steps, and as long as they shrink fast.
+            if iteration > 1 && (shrunk.is_nan() || shrunk >= SHRINKING) {
                 factors = panel.factors();
             }
             let integral = table.integrals(&panel.turning);
@@ -276,34 +276,41 @@ pub(super) fn product(a: &Lanes, b: &Lanes) -> f64 {
 }
 
 /// How far φ turns up to the nodes as if K'/M were constant between them: half the angle is then that of
-/// a vector z which solves `z' = ½ (K'/M) z̄`.
+/// a vector z which solves `z' = ½ (K'/M) z̄`. A guess is good enough: its functions are short series.
 #[inline(always)]
 fn guess(nodes: &Nodes, [cos, sin]: [f64; 2], length: f64) -> Lanes {
-    let table = Collocation::get();
-    let mut pull = [[0.0; NODES]; 2];
-    for (pull, slope) in pull.iter_mut().zip(&nodes.pull_slope) {
-        for i in 0..NODES {
-            pull[i] = slope[i] / nodes.limit[i];
-        }
-    }
-    let (mut x, mut y) = (1.0_f64, 0.0_f64);
-    let mut last = 0.0;
-    let mut turned = [0.0; NODES];
-    for j in 0..NODES {
-        let before = j.saturating_sub(1);
-        let [along, across] = [0, 1].map(|i| 0.5 * (pull[i][before] + pull[i][j]));
+    let gap = &Collocation::get().gap;
+    let [mut along, mut across] = [[0.0; NODES]; 2];
+    for i in 0..NODES {
+        let [x, y] = [0, 1].map(|n| nodes.pull_slope[n][i] / nodes.limit[i]);
         // Turned so that φ begins at zero.
-        let a = [along * cos + across * sin, across * cos - along * sin];
-        let size = (a[0] * a[0] + a[1] * a[1]).sqrt();
-        let step = length * (table.node[j] - last);
-        last = table.node[j];
-        // A guess is good enough: the hyperbolic tangent by its continued fraction.
-        let way = 0.5 * size * step;
-        let by = 0.5 * step * ((15.0 + way * way) / (15.0 + 6.0 * way * way)).min(1.0 / way);
-        let to = [x + by * (a[0] * x + a[1] * y), y + by * (a[1] * x - a[0] * y)];
-        let norm = (to[0] * to[0] + to[1] * to[1]).sqrt();
-        (x, y) = (to[0] / norm, to[1] / norm);
-        turned[j] = 2.0 * y.atan2(x);
+        (along[i], across[i]) = (x * cos + y * sin, y * cos - x * sin);
+    }
+    // The change of z by its mirror image, from one node to the next.
+    let mut by = [along, across];
+    for i in 0..NODES {
+        let before = i.saturating_sub(1);
+        let mean = [0.5 * (along[before] + along[i]), 0.5 * (across[before] + across[i])];
+        let step = 0.5 * length * gap[i];
+        // The hyperbolic tangent by its continued fraction.
+        let squared = (mean[0] * mean[0] + mean[1] * mean[1]) * step * step;
+        let share = ((15.0 + squared) / (15.0 + 6.0 * squared)).min(1.0 / squared.sqrt());
+        (by[0][i], by[1][i]) = (step * share * mean[0], step * share * mean[1]);
+    }
+    let [mut x, mut y] = [[1.0; NODES], [0.0; NODES]];
+    let mut z = [1.0_f64, 0.0_f64];
+    for i in 0..NODES {
+        let [a, b] = [by[0][i], by[1][i]];
+        z = [z[0] + a * z[0] + b * z[1], z[1] + b * z[0] - a * z[1]];
+        (x[i], y[i]) = (z[0], z[1]);
+    }
+    let mut turned = [0.0; NODES];
+    for i in 0..NODES {
+        // A quarter of the angle of z by its tangent.
+        let half = y[i] / ((x[i] * x[i] + y[i] * y[i]).sqrt() + x[i]);
+        let quarter = half / (1.0 + (1.0 + half * half).sqrt());
+        let squared = quarter * quarter;
+        turned[i] = 8.0 * quarter * (1.0 - squared * (1.0 / 3.0 - squared * (0.2 - squared / 7.0)));
     }
     turned
 }

@@ -55,7 +55,7 @@ impl<'a> Plane<'a> {
             limit_slope: if varies { slope(&limit) } else { vec![0.0] },
             limit,
             // The quadrature has to resolve the highest harmonic.
-            longest: (4.0 / harmonics.highest() as f64).min(1.0),
+            longest: (6.0 / harmonics.highest() as f64).min(1.0),
             scale: swing,
             reach: drive.pull.iter().map(|k| k.abs()).sum(),
         }
