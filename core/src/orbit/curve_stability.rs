@@ -19,7 +19,8 @@ const SENSITIVITY: f64 = 30.0;
 ///
 /// Where the harmonics left out could take the largest multiplier to the other side of 1, the point is
 /// solved with about twice as many: it is decided if they change the multiplier by less than its distance
-/// from 1. Points are judged at the same time, each by itself.
+/// from 1. So is every point that seems unstable: a contact that nearly grazes its limit may slip in the
+/// motion of few harmonics alone. Points are judged at the same time, each by itself.
 ///
 /// # Errors
 /// As [`PeriodMap::new`], but for a wave.
@@ -43,13 +44,12 @@ pub fn decide_stability(
         let point = points.get(index).filter(|point| point.is_solved() && progress(0.0))?;
         let found = along(&map, point)?;
         let away = (found.largest() - 1.0).abs();
-        let stable = if away > SENSITIVITY * relative_error(point) {
-            found.stable()
-        } else {
-            let finer = with_more_harmonics(model, settings, point, progress);
-            finer.and_then(|finer| decided(&found, &along(&map, &finer)?))
-        };
-        Some(stable)
+        let clear = found.stable().filter(|_| away > SENSITIVITY * relative_error(point));
+        if clear == Some(true) {
+            return Some(clear);
+        }
+        let finer = with_more_harmonics(model, settings, point, progress);
+        Some(finer.map_or(clear, |finer| decided(&found, &along(&map, &finer)?)))
     });
     for (point, stable) in solution.points.iter_mut().zip(found) {
         if let Some(stable) = stable {
