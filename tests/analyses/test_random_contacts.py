@@ -205,3 +205,13 @@ def test_a_motion_that_touches_a_limit_is_unstable_where_a_disturbance_away_from
     run = ss.transient(model, omega, 150, "exact", start=pushed, samples=64, keep=1)
     size = float(np.abs(state.displacement).max())
     assert np.abs(run.final.displacement - state.displacement).max() > 0.02 * size
+
+
+def test_contacts_that_nearly_graze_their_limit_do_not_make_a_stable_motion_unstable() -> None:
+    # With 9 harmonics one of them slips once more, and the largest multiplier is 1.04 instead of 0.97.
+    model, omega = system(60032)
+    orbit = ss.exact_response(model, [omega])
+    assert orbit.stable[0]
+    verdicts = [ss.forced_response(model, [omega], count).stable[0] for count in (5, 7, 9, 10, 15)]
+    assert False not in verdicts
+    assert verdicts[-1]

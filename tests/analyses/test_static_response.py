@@ -208,3 +208,27 @@ def test_a_rigid_contact_that_slips_leaves_the_body_to_its_springs(stiffness: fl
     rest = ss.static_response(model)
     assert rest.status == "converged"
     assert rest.displacement("x") == pytest.approx(4e-3, rel=1e-5)
+
+
+@pytest.mark.parametrize(("load", "status"), [(0.97, "converged"), (1.03, "free")])
+def test_a_load_beyond_friction_in_space_carries_a_body_away(load: float, status: str) -> None:
+    # Three contacts turn their tractions towards the slide of a body along (1, 2), which a spring
+    # across alone holds: together they take 7.7 N.
+    along, across = np.array([1.0, 2.0]) / 5**0.5, np.array([-2.0, 1.0]) / 5**0.5
+    structure = ss.Structure(np.eye(2), 4e4 * np.outer(across, across), 2.0 * np.eye(2), ["x", "y"])
+    contacts = [
+        ss.Coulomb(
+            [{"x": np.cos(a), "y": np.sin(a)}, {"x": -np.sin(a), "y": np.cos(a)}],
+            normal=None,
+            friction=friction,
+            tangential_stiffness=stiffness,
+            preload=10.0,
+        )
+        for a, friction, stiffness in [(0.0, 0.5, 1e4), (0.7, 0.2, 3e4), (2.0, 0.07, 2e3)]
+    ]
+    forces = [ss.Force(dof, 7.7 * load * p, harmonic=0) for dof, p in zip("xy", along, strict=True)]
+    shaken = ss.Force("x", 0.3)
+    model = ss.Model(structure, contacts, [*forces, shaken])
+    assert ss.static_response(model).status == status
+    response = ss.forced_response(model, [60.0], 5, stability=False)
+    assert response.status[0] == status

@@ -2,6 +2,7 @@
 
 use super::condensed::{Condensed, Path};
 use super::forced::ForcedBalance;
+use super::limit_load::is_carried_away;
 use super::settings::{resolving, Method, Resolution};
 use super::solution::{Point, PointStatus};
 use super::unknowns::Unknowns;
@@ -122,6 +123,7 @@ impl ForcedBalance<'_> {
             Outcome::Converged => PointStatus::Converged,
             Outcome::Singular if equations.free => PointStatus::Free,
             Outcome::Stalled if equations.loose || equations.floats() => PointStatus::Free,
+            Outcome::Stalled if is_carried_away(&self.model) => PointStatus::Free,
             Outcome::Stalled => PointStatus::Stalled,
             Outcome::Singular => PointStatus::Singular,
         };

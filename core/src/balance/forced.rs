@@ -2,12 +2,12 @@
 
 use super::condensed::Condensed;
 use super::evaluation::{Evaluated, Evaluations};
+use super::history::with_history;
 use super::neighbour::Neighbour;
 use super::resolution_control::{Level, ResolutionControl};
 use super::scale::Scale;
 use super::settings::{Resolution, Settings};
 use super::solution::{Point, PointStatus};
-use super::statics::with_history;
 use super::tangent::Tangent;
 use super::unknowns::Unknowns;
 use super::{ExactOrbits, Kept, Progress};

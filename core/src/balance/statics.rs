@@ -6,7 +6,7 @@
 //! in it; where one changes its state, or where sliding turns, the path bends, and two halves of the
 //! step differ from the whole. Steps follow that difference.
 
-use crate::contact::{ContactLaw, ReturnMapJacobian};
+use crate::contact::ReturnMapJacobian;
 use crate::model::Model;
 use crate::solve::norm;
 use crate::structure::{Quantity, Receptance, Request};
@@ -109,34 +109,10 @@ pub fn static_response(
     })
 }
 
-/// The model with friction that has its history from its static loads; nothing if it has no such
-/// loads, no law that keeps it, or no equilibrium under them.
-///
-/// # Errors
-/// As [`static_response`].
-pub fn with_history(model: &Model) -> Result<Option<Model>, Error> {
-    let loaded = model.compliance().forced_harmonics().contains(&0);
-    let keeps =
-        |law: &dyn ContactLaw| law.with_history(&law.beginning().0, &law.beginning().1).is_some();
-    if !loaded || !model.laws().iter().any(|law| keeps(law.as_ref())) {
-        return Ok(None);
-    }
-    let at_rest = static_response(model, &[], &|_| true)?;
-    if at_rest.status != RestStatus::Converged {
-        return Ok(None);
-    }
-    let laws = model.laws().iter().zip(model.points()).zip(&at_rest.states);
-    let laws = laws.map(|((law, points), state)| {
-        let displacement = &at_rest.contact_displacement[points.clone()];
-        law.with_history(displacement, state).unwrap_or_else(|| law.with_scaled_forces(1.0))
-    });
-    model.with_laws(laws.collect()).map(Some)
-}
-
 /// The loading of a model, from rest or from where another one has ended.
 pub(crate) struct Loading<'a> {
-    model: &'a Model,
-    receptance: Mat<f64>,
+    pub(super) model: &'a Model,
+    pub(super) receptance: Mat<f64>,
     /// Displacements of the stuck contacts at the beginning, …
     base: Vec<f64>,
     /// … and their change by the whole load.
@@ -164,6 +140,15 @@ impl<'a> Loading<'a> {
         })
     }
 
+    /// What the equations lack at displacements that are reached from the level in one step, under the
+    /// whole load.
+    pub(super) fn missing(&self, u: &[f64]) -> Vec<f64> {
+        let mut level = Level { share: 1.0, u: u.to_vec(), ..self.level.clone() };
+        let mut residual = vec![0.0; u.len()];
+        self.evaluate(&self.level, &mut level, &mut residual);
+        residual
+    }
+
     /// Adds another load, given by its displacements of the stuck contacts, from a level on.
     pub(crate) fn add(&mut self, level: &Level, base: Vec<f64>, stuck: Vec<f64>) {
         self.level = Level { share: 0.0, ..level.clone() };
@@ -187,7 +172,7 @@ impl<'a> Loading<'a> {
                 return RestStatus::NotComputed;
             }
             if self.steps == MOST_STEPS {
-                return RestStatus::Stalled;
+                return self.failure();
             }
             step = step.min(1.0 - self.level.share);
             let to = if step >= 1.0 - self.level.share { 1.0 } else { self.level.share + step };
@@ -363,7 +348,7 @@ impl<'a> Loading<'a> {
             let values = svd.S().column_vector();
             (0..size).any(|i| values[i] <= 1e-10 * values[0])
         });
-        if singular {
+        if singular || self.goes_away() {
             RestStatus::Free
         } else {
             RestStatus::Stalled

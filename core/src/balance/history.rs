@@ -1,0 +1,30 @@
+//! Friction with the history that it has from static loads.
+
+use super::statics::{static_response, RestStatus};
+use crate::contact::ContactLaw;
+use crate::model::Model;
+use crate::Error;
+
+/// The model with friction that has its history from its static loads; nothing if it has no such
+/// loads, no law that keeps it, or no equilibrium under them.
+///
+/// # Errors
+/// As [`static_response`].
+pub fn with_history(model: &Model) -> Result<Option<Model>, Error> {
+    let loaded = model.compliance().forced_harmonics().contains(&0);
+    let keeps =
+        |law: &dyn ContactLaw| law.with_history(&law.beginning().0, &law.beginning().1).is_some();
+    if !loaded || !model.laws().iter().any(|law| keeps(law.as_ref())) {
+        return Ok(None);
+    }
+    let at_rest = static_response(model, &[], &|_| true)?;
+    if at_rest.status != RestStatus::Converged {
+        return Ok(None);
+    }
+    let laws = model.laws().iter().zip(model.points()).zip(&at_rest.states);
+    let laws = laws.map(|((law, points), state)| {
+        let displacement = &at_rest.contact_displacement[points.clone()];
+        law.with_history(displacement, state).unwrap_or_else(|| law.with_scaled_forces(1.0))
+    });
+    model.with_laws(laws.collect()).map(Some)
+}
