@@ -208,7 +208,7 @@ def test_a_motion_that_touches_a_limit_is_unstable_where_a_disturbance_away_from
 
 
 def test_contacts_that_nearly_graze_their_limit_do_not_make_a_stable_motion_unstable() -> None:
-    # With 9 harmonics one of them slips once more, and the largest multiplier is 1.04 instead of 0.97.
+    # With 9 harmonics the largest multiplier is beyond 1, instead of 0.97.
     model, omega = system(60032)
     orbit = ss.exact_response(model, [omega])
     assert orbit.stable[0]
