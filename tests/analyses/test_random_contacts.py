@@ -215,3 +215,14 @@ def test_contacts_that_nearly_graze_their_limit_do_not_make_a_stable_motion_unst
     verdicts = [ss.forced_response(model, [omega], count).stable[0] for count in (5, 7, 9, 10, 15)]
     assert False not in verdicts
     assert verdicts[-1]
+
+
+@pytest.mark.parametrize("detune", [0.99, 0.999, 1.0, 1.001])
+def test_an_orbit_is_found_whose_contact_keeps_all_the_traction_of_its_load(detune: float) -> None:
+    # It sticks at its limit: the middle of its motion is beyond what Coulomb allows.
+    model, omega = system(60431)
+    orbit = ss.exact_response(model, [detune * omega])
+    assert orbit.status[0].solved
+    assert orbit.iterations[0] < 10
+    balance = ss.forced_response(model, [detune * omega], 3)
+    np.testing.assert_allclose(amplitudes(orbit), amplitudes(balance), rtol=1e-8)

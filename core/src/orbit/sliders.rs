@@ -29,6 +29,8 @@ const CLEAR: f64 = 1e-9;
 const TOUCHES: f64 = 1e-7;
 /// … and step of differences, all relative to the contact's forces.
 const DIFFERENCE: f64 = 1e-6;
+/// Further looks for an orbit beside one that touches limits.
+const LOOKS: usize = 3;
 
 /// A contact of one point whose slider an orbit leaves where it is; positions are scaled by the spring,
 /// in N.
@@ -79,6 +81,12 @@ impl Kept {
     /// Way to the middle of what Coulomb allows: there nothing slips.
     fn inwards(&self) -> f64 {
         0.5 * (self.allowed[0] + self.allowed[1]) - self.position
+    }
+
+    /// A little of it.
+    fn little(&self) -> f64 {
+        let by = (DIFFERENCE * self.scale).min(self.inwards().abs()).max(SETTLED * self.scale);
+        by.copysign(self.inwards())
     }
 
     fn touches(&self) -> bool {
@@ -179,21 +187,14 @@ fn step(
     let (size, count) = (y.len(), kept.len());
     let moved = responses(shooting, y, kept)?;
     // Differences are taken where nothing slips: away from the limits that are touched.
-    let inwards = |one: &Kept| {
-        let by = (DIFFERENCE * one.scale).min(one.inwards().abs()).max(SETTLED * one.scale);
-        by.copysign(one.inwards())
-    };
-    let mut inside = y.to_vec();
-    for (j, one) in kept.iter().enumerate().filter(|(_, one)| one.touches()) {
-        inside.iter_mut().enumerate().for_each(|(i, y)| *y += inwards(one) * moved[(i, j)]);
-    }
+    let inside = beside(y, kept, &moved);
     let here = self::kept(shooting, assumption, &inside)?;
     let target = |of: &[Kept], point: usize| {
         of.iter().find(|one| one.point == point).map_or(f64::NAN, Kept::target)
     };
     let mut matrix = Mat::<f64>::identity(count, count);
     for (j, one) in kept.iter().enumerate() {
-        let by = inwards(one);
+        let by = one.little();
         let aside: Vec<f64> =
             inside.iter().enumerate().map(|(i, y)| y + by * moved[(i, j)]).collect();
         let aside = self::kept(shooting, assumption, &aside)?;
@@ -212,9 +213,33 @@ fn step(
 
 /// Derivative of the closed orbit in the positions of the sliders, column by column.
 fn responses(shooting: &mut Shooting<'_>, y: &[f64], kept: &[Kept]) -> Option<Mat<f64>> {
+    let mut inside = inwards(shooting, y, kept);
+    let mut moved = derivative(shooting, &inside, kept)?;
+    // A slider moved by itself sets the body going, and may come to its limit again: the orbit goes with it.
+    for _ in 0..LOOKS {
+        if !kept.iter().any(|one| shooting.slipped()[one.point]) {
+            break;
+        }
+        inside = beside(y, kept, &moved);
+        moved = derivative(shooting, &inside, kept)?;
+    }
+    Some(moved)
+}
+
+/// The orbit whose sliders that touch their limit are a little inside, to first order.
+fn beside(y: &[f64], kept: &[Kept], moved: &Mat<f64>) -> Vec<f64> {
+    let mut inside = y.to_vec();
+    for (j, one) in kept.iter().enumerate().filter(|(_, one)| one.touches()) {
+        let by = one.little();
+        inside.iter_mut().enumerate().for_each(|(i, y)| *y += by * moved[(i, j)]);
+    }
+    inside
+}
+
+/// [`responses`] with the transition matrix at a state.
+fn derivative(shooting: &mut Shooting<'_>, y: &[f64], kept: &[Kept]) -> Option<Mat<f64>> {
     let size = y.len();
-    let inside = inwards(shooting, y, kept);
-    shooting.image(&inside)?;
+    shooting.image(y)?;
     let mut matrix = shooting.derivative();
     (0..size).for_each(|i| matrix[(i, i)] -= 1.0);
     let mut slipped = shooting.slipped().to_vec();
