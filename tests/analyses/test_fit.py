@@ -71,6 +71,37 @@ def test_profiles_end_where_the_misfit_has_risen_to_its_limit(fitted):
 
 
 @pytest.mark.slow
+def test_intervals_do_not_depend_on_where_in_a_valley_the_fit_ends():
+    """Nothing slips: slip forces above 9.76 N fit alike, and the search ends at any of them."""
+    rig = ss.Structure(
+        np.diag([1.0, 0.5]),
+        [[3e5, -1e5], [-1e5, 2e5]],
+        ss.Rayleigh(mass=0.0, stiffness=1e-4),
+        ["blade", "platform"],
+    )
+    pad = ss.Jenkins("platform", stiffness=2e5, slip_force=12.0, name="pad")
+    stuck = ss.Model(rig, [pad], [ss.Force("blade", 2.0)])
+    omega = np.linspace(380, 680, 16)
+    seen = ss.forced_response(stuck, omega, 5).amplitude("blade")
+    test = ss.Measurement(omega, "blade", seen, relative_noise=0.02)
+
+    def intervals(highest):
+        bounds = {
+            "pad.stiffness": (1e4, 1e7),
+            "pad.slip_force": (0.5, highest),
+            "damping.stiffness": (1e-6, 1e-2),
+        }
+        return ss.fit(stuck, [test], parameters=bounds, harmonics=5).intervals
+
+    wide = intervals(200.0)
+    for highest in (25.0, 150.0):
+        found = intervals(highest)
+        for name in ("pad.stiffness", "damping.stiffness"):
+            assert found[name] == pytest.approx(wide[name], rel=1e-4)
+        assert found["pad.slip_force"] == pytest.approx((wide["pad.slip_force"][0], highest))
+
+
+@pytest.mark.slow
 def test_covariance_agrees_with_profiles_where_the_model_bends_little(fitted):
     quick = ss.fit(model(1.0), curves(0), parameters=BOUNDS, intervals="covariance")
     for name, ends in quick.intervals.items():

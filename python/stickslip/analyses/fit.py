@@ -10,12 +10,8 @@ import numpy as np
 from stickslip.analyses.arguments import known_dofs, require_forced, require_held
 from stickslip.analyses.fit_assumptions import fit_assumptions
 from stickslip.analyses.fit_parameters import FitParameter, applied
-from stickslip.analyses.misfit import (
-    Misfit,
-    covariance,
-    covariance_ends,
-    profile_ends,
-)
+from stickslip.analyses.misfit import Misfit
+from stickslip.analyses.profile import covariance, covariance_ends, profile_ends
 from stickslip.analyses.run import Progress, Run, share
 from stickslip.checks import brief, members
 from stickslip.errors import ModelError
@@ -40,8 +36,6 @@ _COARSE = 3
 """Harmonics with which starts are compared: errors of some percent do not matter there."""
 _SAME = 1e-3
 """Distance between two minima, in scaled parameters, within which they are one."""
-_INSIDE = 1e-9
-"""Distance of starts from the bounds."""
 _SEARCH = 0.6
 """Share of the progress that the best fit is given."""
 
@@ -145,7 +139,7 @@ class _Search:
         ends: list[tuple[float, Float]] = []
         order = np.argsort(heights)[:_FOLLOWED]
         for at in order:
-            ends.append(self._followed(coarse, starts[at]))
+            ends.append(coarse.least(starts[at]))
             self.best = min(ends, key=lambda one: one[0])[1]
             least = min(ends, key=lambda one: one[0])[0]
             agreed = sum(np.abs(end - self.best).max() < _SAME for _, end in ends)
@@ -160,7 +154,7 @@ class _Search:
         ]
         # Few harmonics may have no minimum where all have one: starts are followed with all, too.
         for number, end in enumerate([*distinct, *(starts[at] for at in order)], 1):
-            self.minima.append(self._followed(self.misfit, end))
+            self.minima.append(self.misfit.least(end))
             least = min(one for one, _ in self.minima)
             if number >= min(_AGREED, len(distinct)) and self._is_enough(least):
                 break
@@ -171,26 +165,6 @@ class _Search:
     def _is_enough(self, least: float) -> bool:
         """Whether no better minimum need be there: with a known noise, the model fits within it."""
         return not self.misfit.noise_known or least <= self.misfit.expected
-
-    def _followed(self, misfit: Misfit, start: Float) -> tuple[float, Float]:
-        """Return the misfit and the place of the minimum that a start leads to."""
-        from scipy.optimize import least_squares
-
-        def residuals(at: Float) -> Float:
-            return misfit.at(at).residuals
-
-        def jacobian(at: Float) -> Float:
-            return misfit.at(at).jacobian
-
-        found = least_squares(
-            residuals,
-            np.clip(start, _INSIDE, 1.0 - _INSIDE),
-            jac=jacobian,
-            bounds=(0.0, 1.0),
-            xtol=1e-8,
-            max_nfev=self._settings.max_evaluations,
-        )
-        return 2.0 * float(found.cost), np.array(found.x)
 
 
 def _starts(count: int, number: int) -> list[Float]:
