@@ -23,6 +23,8 @@ const COARSE: f64 = 1e-3;
 const EXACT: f64 = 1e-11;
 /// Correction after which a lap has all digits that rounding leaves it.
 const NEARLY: f64 = 1e-10;
+/// Excess over the limit, relative to it, with which a lap may begin: a stick begins at the limit, to rounding.
+const NEARLY_WITHIN: f64 = 1e-6;
 /// Laps by Newton's method; after them, the march alone.
 const NEWTON_LAPS: usize = 12;
 /// Determinant of `1 − P`, with the derivative P of a lap in its start, below which the slip of the lap
@@ -172,6 +174,7 @@ impl Period<'_> {
             march.resolved = if last { RESOLVED } else { ROUGHLY };
             march.hints = hints;
             let mut slider = march.begin(position);
+            march.confine(theta, &mut slider, NEARLY_WITHIN);
             march.follow(theta, end, &mut slider, false);
             if !march.slipped {
                 return None;
@@ -213,7 +216,7 @@ impl Period<'_> {
         let (position, rate) = self.assumed(grid);
         let mut first = March::new(self.drive, plane, grid, true);
         let mut slider = first.begin(position);
-        first.confine(0.0, &mut slider);
+        first.confine(0.0, &mut slider, 0.0);
         for lap in 0..MOST_LAPS {
             let before = slider.position;
             first.follow(0.0, span, &mut slider, false);
@@ -266,4 +269,61 @@ fn start_rate(slider: &Slider, inverse: [[f64; 2]; 2], width: usize) -> Vec<f64>
     let row =
         |row: [f64; 2]| x[..own].iter().zip(&y[..own]).map(move |(x, y)| row[0] * x + row[1] * y);
     row(inverse[0]).chain(row(inverse[1])).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::{Closure, Motion};
+    use crate::fourier::{Harmonics, SampleTable};
+
+    /// Rough motions, up to three thousand times as far as the contact slips at, along a line and beside
+    /// it: rounding at the limit neither stops a march nor takes the traction out of the cone, and a lap that
+    /// begins outside of it finds the cycle, too.
+    #[test]
+    fn rough_motions_stay_within_the_cone() {
+        let mut seed = 7_u64;
+        let mut random = move || {
+            seed = seed
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 33) as f64 / f64::from(1_u32 << 30) - 1.0
+        };
+        let law = Coulomb::new(2, 0.3, 1.0, Some(1.0), Closure::Preload(1.0)).unwrap();
+        for case in 0..60 {
+            let table = SampleTable::new(Harmonics::new(11 + 10 * (case % 5), false));
+            let slots = table.harmonics().slots();
+            let across = [0.0, 1e-16, 1e-3][case % 3];
+            let size = 10.0_f64.powf(1.5 + random());
+            let mut series = |size: f64| -> Vec<f64> {
+                (0..slots).map(|i| size * random() / (1.0 + (i / 2) as f64)).collect()
+            };
+            let mut displacement = series(size);
+            displacement.extend(series(across * size));
+            displacement.extend(series(0.05));
+            let motion =
+                Motion { table: &table, displacement: &displacement, residual: Residual::Centred };
+            let drive = Drive::new(&law, motion, true);
+            let period =
+                Period { law: &law, drive: &drive, residual: Residual::Centred, rates: false };
+            let (plane, grid) = (Plane::new(&drive), Grid::new(&drive));
+            let (pull, _) = drive.at(0.0);
+            let far = [pull[0][0] + 10.0, pull[1][0]];
+            let cycle = period.recurrent(&plane, &grid, (0.0, far), LEAST);
+            let cycle = cycle.unwrap_or_else(|| panic!("{case} has no cycle from outside"));
+            let stuck = cycle.stretches.iter().filter_map(|stretch| match &stretch.state {
+                State::Stuck { slider, .. } => Some((stretch.start, stretch.end, *slider)),
+                _ => None,
+            });
+            for (start, end, slider) in stuck {
+                for share in 0..=20 {
+                    let theta = start + (end - start) * f64::from(share) / 20.0;
+                    let (pull, [pressing, _]) = drive.at(theta);
+                    let size = (pull[0][0] - slider[0]).hypot(pull[1][0] - slider[1]);
+                    let limit = drive.friction * pressing;
+                    assert!(size <= limit * (1.0 + 1e-6), "{case} at {theta}: {size} of {limit}");
+                }
+            }
+        }
+    }
 }

@@ -115,12 +115,13 @@ impl<'a> March<'a> {
         Slider { position, rate }
     }
 
-    /// Takes a slider from which the cone does not reach to the nearest from which it does.
-    pub(super) fn confine(&self, theta: f64, slider: &mut Slider) {
+    /// Takes a slider from which the cone does not reach to the nearest from which it does. One that is but a
+    /// little too far comes back by itself, or slips.
+    pub(super) fn confine(&self, theta: f64, slider: &mut Slider, little: f64) {
         let (pull, [pressing, _]) = self.drive.at(theta);
         let limit = self.drive.friction * pressing;
         let size = (pull[0][0] - slider.position[0]).hypot(pull[1][0] - slider.position[1]);
-        if size > limit {
+        if size > limit * (1.0 + little) {
             let (angle, rate) = self.onset(theta, slider, false);
             self.leave(theta, angle, &rate, slider);
         }
@@ -141,12 +142,15 @@ impl<'a> March<'a> {
             size >= limit * (1.0 - AT_LIMIT) && rate > self.at_rest()
         };
         let most = MOST_CHANGES * self.drive.harmonics().highest().max(4);
+        let mut rest = 0.0;
         for change in 0..most {
             if slips {
-                let closes = closes && change == 0;
+                let (closes, from) = (closes && change == 0, theta);
                 theta = self.slip(theta, end, slider, closes);
+                // Rounding at the limit calls for slip that ends where it begins: the contact rests.
+                rest = if theta > from { 0.0 } else { f64::max(2.0 * rest, SHORTEST) };
             } else {
-                theta = self.stick(theta, end, slider);
+                theta = self.stick(theta, end, slider, rest);
             }
             if theta >= end {
                 return;
@@ -161,9 +165,10 @@ impl<'a> March<'a> {
         self.stretches.push(Stretch { start, end, state });
     }
 
-    /// Sticks until the traction leaves the cone.
-    fn stick(&mut self, start: f64, end: f64, slider: &Slider) -> f64 {
-        let until = self.leaves(start, end, slider.position).unwrap_or(end);
+    /// Sticks until the traction leaves the cone, and for a while in any case.
+    fn stick(&mut self, start: f64, end: f64, slider: &Slider, rest: f64) -> f64 {
+        let rests = (start + rest).min(end);
+        let until = self.leaves(rests, end, slider.position).unwrap_or(end);
         if until > start {
             self.push_stuck(start, until, slider);
         }
