@@ -242,9 +242,9 @@ TEXTS = {
     "stability-unknown": "The stability of {count} values is not decided.",
     "multipliers": "{points} points have no exact orbit nearby at their {_followed}: their "
     "multipliers are those of the exact flow along the harmonic balance.",
-    "branch-turned-back": "Stalled: at {_followed} = {value:.6g} the walk turned back on itself, "
-    "or closed a loop: no way ahead was found at a corner of the branch, which may go on to a "
-    "farther limit. {_remedy}",
+    "branch-turned-back": "Stalled: at {_followed} = {value:.6g} the continuation came back to "
+    "points that it had passed, from a corner of the branch. The branch may go on beyond the "
+    "corner, to a farther limit. {_remedy}",
     "branch-stalled": "Stalled: the {side} side ends at {_followed} = {value:.6g}, where no "
     "continuation was found. {_remedy}",
     "points-limit": "The branch ends after {points} points; raise max_points.",
