@@ -124,6 +124,11 @@ impl Extension {
         (self.steps == Steps::Two).then_some(Self { steps: Steps::OneInState, ..self })
     }
 
+    /// The discarded harmonics that it adds, with those between them.
+    pub(super) fn discarded(&self, kept: &Harmonics) -> std::ops::Range<usize> {
+        kept.highest() + 1..self.highest + 1
+    }
+
     /// Not beyond a harmonic.
     pub(super) fn within(self, resolved: usize) -> Self {
         Self { highest: self.highest.min(resolved), ..self }

@@ -62,19 +62,28 @@ impl ForcedBalance<'_> {
         let whole = Extension::new(harmonics, point.omega, &self.model, slipping, observed);
         // Where harmonics are chosen, every estimate decides by itself.
         let beside = whole.beside().filter(|_| self.control.is_fixed());
+        let solution = Unknowns { harmonics: harmonics.clone(), values: x.to_vec() };
         if let Some((first, growth)) = beside.zip(self.neighbour.served(point)) {
-            let estimate = self.extended(harmonics, x, solved, point, first)?;
+            let discarded = whole.discarded(harmonics);
+            let (piece, of) = (&mut self.neighbour, self.model.compliance());
+            if let Some(errors) = piece.continued(point, &solution, of, discarded) {
+                point.error_estimate = errors;
+                return Ok(true);
+            }
+            let estimate = self.extended(&solution, solved, point, first)?;
             let Some(estimate) = estimate else { return Ok(false) };
             if estimate.keeps_states {
                 let errors = estimate.errors.iter().zip(growth).map(|(error, by)| error * by);
                 point.error_estimate = errors.collect();
+                self.neighbour.note(point, solution, &point.error_estimate);
                 return Ok(true);
             }
         }
-        let estimate = self.extended(harmonics, x, solved, point, whole)?;
+        let estimate = self.extended(&solution, solved, point, whole)?;
         let Some(Estimate { errors, first, keeps_states }) = estimate else { return Ok(false) };
         let told = beside.is_some() && keeps_states;
         self.neighbour.learn(point, &errors, told.then_some(&first[..]));
+        self.neighbour.note(point, solution, &errors);
         point.error_estimate = errors;
         Ok(true)
     }
@@ -83,8 +92,7 @@ impl ForcedBalance<'_> {
     /// is to end.
     fn extended(
         &mut self,
-        harmonics: &Harmonics,
-        x: &[f64],
+        solution: &Unknowns,
         solved: Option<&Condensed<'_>>,
         point: &mut Point,
         extension: Extension,
@@ -97,13 +105,11 @@ impl ForcedBalance<'_> {
         let least = if climb { (8 * (order + 1)).next_power_of_two() } else { 0 };
         let model = self.evaluated(point.samples.map(|samples| samples.max(least)))?;
         let table = self.coarse_table(order);
-        let solution = Unknowns { harmonics: harmonics.clone(), values: x.to_vec() };
         let residual = self.settings.residual;
         let ask = self.interruption();
         let observe = self.observe;
-        let found = estimate(
-            &model, &table, residual, &solution, observe, point, solved, &extension, &ask,
-        )?;
+        let found =
+            estimate(&model, &table, residual, solution, observe, point, solved, &extension, &ask)?;
         let Some(mut found) = found else {
             point.error_estimate = vec![f64::NAN; observe.len()];
             return Ok(None);
@@ -111,7 +117,7 @@ impl ForcedBalance<'_> {
         // DOFs without mass move with kinks: harmonics fall with the square of their order, and the error
         // with the first power of H, so that the extended balance has a known share of it.
         if !self.model.structure().massless().is_empty() {
-            let unseen = order as f64 / (order - harmonics.highest()) as f64;
+            let unseen = order as f64 / (order - solution.harmonics.highest()) as f64;
             found.errors.iter_mut().chain(&mut found.first).for_each(|error| *error *= unseen);
         }
         Ok(Some(found))

@@ -34,6 +34,7 @@ mod settings;
 mod single_harmonic;
 mod slider_start;
 mod slip_jacobian;
+mod smooth_piece;
 mod solution;
 mod statics;
 mod tangent;

@@ -3,9 +3,14 @@
 //! A solution that starts from its neighbour takes two Newton steps instead of six, and its estimate should
 //! not take longer. How much the second step of an estimate adds to the first one changes slowly along a
 //! curve: what was found at one point holds for a few after it, as long as the first step makes no contact
-//! begin or cease to slip.
+//! begin or cease to slip. Where the motion but for its phase hardly changes, and no discarded harmonic
+//! comes to a mode, the estimate itself goes on as it did between the two points before, at every other point.
 
+use super::smooth_piece::{Estimated, SmoothPiece};
 use super::solution::Point;
+use super::unknowns::Unknowns;
+use crate::structure::Compliance;
+use std::ops::Range;
 
 /// Points are beside one another up to this distance in frequency, relative to it.
 const NEAR: f64 = 0.02;
@@ -20,6 +25,7 @@ pub(super) struct Neighbour {
     /// Its error over that after the first step, of each observed DOF; empty where it is not known.
     growth: Vec<f64>,
     served: usize,
+    piece: SmoothPiece,
 }
 
 impl Neighbour {
@@ -31,12 +37,28 @@ impl Neighbour {
         (suits && !self.growth.is_empty()).then(|| self.growth.clone())
     }
 
+    /// The estimate of a point beside, if it goes on from those before.
+    pub(super) fn continued(
+        &mut self,
+        point: &Point,
+        solution: &Unknowns,
+        compliance: &dyn Compliance,
+        discarded: Range<usize>,
+    ) -> Option<Vec<f64>> {
+        self.piece.continued(point, solution, compliance, discarded)
+    }
+
+    /// Notes the estimate of a point, with its solution.
+    pub(super) fn note(&mut self, point: &Point, solution: Unknowns, errors: &[f64]) {
+        self.piece.note(Estimated::new(point, solution, errors));
+    }
+
     /// Learns from a point at which an estimate was made as a whole, with the errors after its first step
     /// if they tell of others.
     pub(super) fn learn(&mut self, point: &Point, errors: &[f64], first: Option<&[f64]>) {
         let growth = errors.iter().zip(first.unwrap_or_default());
         // 0 over 0 is no growth.
-        let growth = growth.map(|(whole, first)| (whole / first).max(1.0)).collect();
-        *self = Self { omega: point.omega, harmonics: point.harmonics, growth, served: 0 };
+        self.growth = growth.map(|(whole, first)| (whole / first).max(1.0)).collect();
+        (self.omega, self.harmonics, self.served) = (point.omega, point.harmonics, 0);
     }
 }

@@ -83,6 +83,11 @@ impl<'a> Flow<'a> {
         self.granted = steps;
     }
 
+    /// Takes off the steps that are granted what other work costs.
+    pub(crate) fn charge(&mut self, steps: usize) {
+        self.granted = self.granted.saturating_sub(steps);
+    }
+
     /// Whether all steps that were granted are taken.
     #[must_use]
     pub fn is_spent(&self) -> bool {

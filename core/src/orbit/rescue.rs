@@ -8,10 +8,10 @@ use crate::balance::{ExactOrbits, Point, PointStatus, Progress};
 use crate::contact::Residual;
 use crate::model::Model;
 use crate::motion::State;
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 
-/// Operations that the steps of one search may take: some seconds.
-const PATIENCE: f64 = 4e9;
+/// Operations that one search may take, transition matrices included: a second or two.
+const PATIENCE: f64 = 2e9;
 
 /// Finds exact orbits on demand.
 pub struct OrbitInitialGuess<'a> {
@@ -23,6 +23,8 @@ pub struct OrbitInitialGuess<'a> {
     orbits: RefCell<Option<Option<PeriodicOrbits<'a>>>>,
     /// Frequency and start of the last orbit: it may be asked for again with more harmonics.
     last: RefCell<Option<(f64, State)>>,
+    /// Frequency at which no orbit was found last: a longer search is not granted, and none is repeated.
+    missed: Cell<f64>,
 }
 
 impl<'a> OrbitInitialGuess<'a> {
@@ -42,6 +44,7 @@ impl<'a> OrbitInitialGuess<'a> {
             progress,
             orbits: RefCell::new(None),
             last: RefCell::new(None),
+            missed: Cell::new(f64::NAN),
         }
     }
 
@@ -59,13 +62,20 @@ impl<'a> OrbitInitialGuess<'a> {
 
 impl ExactOrbits for OrbitInitialGuess<'_> {
     fn orbit(&self, omega: f64, highest: usize) -> Option<Point> {
-        self.with(|orbits| {
+        if self.missed.get() == omega {
+            return None;
+        }
+        let found = self.with(|orbits| {
             orbits.report_up_to(highest);
             let last = self.last.take().filter(|(known, _)| *known == omega);
             let found = orbits.solve(omega, last.as_ref().map(|(_, start)| start)).ok()?;
             self.last.replace(found.start().cloned().map(|start| (omega, start)));
             (found.response.status == PointStatus::Converged).then_some(found.response)
-        })
+        });
+        if found.is_none() {
+            self.missed.set(omega);
+        }
+        found
     }
 
     fn price(&self, omega: f64, events: usize, highest: usize) -> Option<f64> {

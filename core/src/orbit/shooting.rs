@@ -55,6 +55,8 @@ pub(super) struct Shooting<'a> {
     last: Option<(Vec<f64>, Vec<f64>, Vec<bool>)>,
     /// Transition matrices assembled so far, and exponentials of their stretches.
     pub(super) matrices: usize,
+    /// Whether transition matrices are paid for with steps of the flow.
+    charges: bool,
     propagators: Propagators,
 }
 
@@ -106,6 +108,7 @@ impl<'a> Shooting<'a> {
             earlier: false,
             last: None,
             matrices: 0,
+            charges: false,
             propagators: Propagators::default(),
         }
     }
@@ -149,9 +152,10 @@ impl<'a> Shooting<'a> {
         self.image(&y)
     }
 
-    /// Grants the flow another number of steps.
+    /// Grants the flow another number of steps; of fewer than usual, transition matrices take their share.
     pub(super) fn grant(&mut self, steps: usize) {
         self.flow.grant(steps);
+        self.charges = steps < STEPS;
     }
 
     /// Confines the flow to the part of a period after which sectors have changed their roles.
@@ -308,6 +312,10 @@ impl<'a> Shooting<'a> {
             return derivative.clone();
         }
         self.matrices += 1;
+        if self.charges {
+            let passes = self.price();
+            self.flow.charge((passes * self.steps as f64) as usize);
+        }
         let (coordinates, known) = (&self.coordinates, &mut self.propagators);
         let along = self.memory.along(coordinates, &self.phases, &self.held, &self.begun, known);
         let derivative = match &self.rotation {

@@ -204,8 +204,23 @@ pub trait Compliance: Send + Sync {
         &self.outline().free
     }
 
+    /// Whether no mode, with the contacts stuck or removed, resonates within a range that it passes in less
+    /// than half of that [rad/s].
+    fn is_clear(&self, range: [f64; 2]) -> bool {
+        let lists = [self.stuck_frequencies(), self.free_frequencies()];
+        let known = lists.iter().any(|list| !list.is_empty());
+        self.narrowest_bandwidth() >= 0.5 * (range[1] - range[0])
+            || (known && lists.iter().all(|list| within(list, range).is_empty()))
+    }
+
     /// Half-power bandwidth `2ζω` of the least damped mode, where it is known [rad/s].
     fn narrowest_bandwidth(&self) -> f64 {
         self.outline().bandwidth
     }
+}
+
+/// Positions of the entries of an ascending list within a range.
+pub(crate) fn within(ascending: &[f64], [low, high]: [f64; 2]) -> std::ops::Range<usize> {
+    let first = ascending.partition_point(|entry| *entry < low);
+    first..first.max(ascending.partition_point(|entry| *entry <= high))
 }

@@ -6,7 +6,7 @@ use super::modal::{ModalBase, ModalCompliance};
 use super::modes::resonates;
 use super::restraint::restrain;
 use super::spectrum::Spectrum;
-use super::{Compliance, Outline, Quantity, Receptance, Request};
+use super::{within, Compliance, Outline, Quantity, Receptance, Request};
 use crate::Error;
 use faer::linalg::matmul::matmul;
 use faer::{c64, Accum, Mat, MatMut, Par};
@@ -180,6 +180,21 @@ impl Compliance for ModalCompliance {
             }
         }
         Ok(())
+    }
+
+    /// What resonates beside a mode of this base is taken to be as narrow.
+    fn is_clear(&self, range: [f64; 2]) -> bool {
+        let width = 0.5 * (range[1] - range[0]);
+        let narrow = |frequency: f64| match &self.spectrum {
+            Spectrum::Real { omega_squared, damping, .. } => {
+                let above = within(omega_squared, [f64::MIN, frequency.powi(2)]).end;
+                let beside = above.saturating_sub(1)..(above + 1).min(damping.len());
+                damping[beside].iter().any(|c| c.abs() < width)
+            }
+            Spectrum::Complex { .. } => self.outline.bandwidth < width,
+        };
+        let Outline { stuck, free, .. } = &self.outline;
+        ![stuck, free].iter().any(|list| list[within(list, range)].iter().copied().any(narrow))
     }
 
     fn effort(&self, observed: usize) -> [f64; 2] {

@@ -132,6 +132,11 @@ impl Compliance for Ring {
         &self.natural()[1]
     }
 
+    /// Of the sectors, as the highest frequency.
+    fn is_clear(&self, range: [f64; 2]) -> bool {
+        self.sectors.iter().all(|sector| sector.is_clear(range))
+    }
+
     /// Of the sectors with their neighbours held still, which takes no decomposition of the whole
     /// disk; soft couplings raise it little.
     fn highest_frequency(&self) -> f64 {
