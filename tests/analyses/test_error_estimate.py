@@ -167,6 +167,53 @@ def test_estimates_along_a_curve_are_those_of_its_frequencies(harmonics: int) ->
             assert np.median(ratio) == pytest.approx(1.0, abs=0.1)
 
 
+def carried_on(errors: np.ndarray) -> list[int]:
+    """Points of an even grid whose estimates are those that the two before them lead to."""
+    found, own = [], [0]
+    for i in range(1, errors.shape[1]):
+        if own[-1] == i - 1 and len(own) > 1:
+            before, last = errors[:, own[-2]], errors[:, i - 1]
+            growth = (last / before) ** (1.0 / (i - 1 - own[-2]))
+            if np.allclose(errors[:, i], last * growth.clip(1.0, 1.5), rtol=1e-6, atol=0.0):
+                found.append(i)
+                continue
+        own.append(i)
+    return found
+
+
+def test_estimates_go_on_along_smooth_pieces() -> None:
+    beam, omega = ss.reference.snecma_beam(20.313), np.linspace(200.0, 220.0, 21)
+    for harmonics in (1, 3):
+        curve = ss.forced_response(beam, omega, harmonics)
+        errors = np.array([curve.error_estimate(dof) for dof in curve.dofs])
+        found = carried_on(errors)
+        assert len(found) >= 7
+        assert (np.diff(found) > 1).all()
+        alone = [ss.forced_response(beam, omega[[i]], harmonics) for i in found]
+        own = np.array([[one.error_estimate(dof)[0] for one in alone] for dof in curve.dofs])
+        # Where a second step sets in, its estimate is up to twice that of the point before.
+        assert (errors[:, found] / own).min() > 0.45
+        assert (errors[:, found] / own).max() < 2.02
+
+
+@pytest.mark.parametrize(("ratio", "go_on"), [(3e-2, True), (1e-4, False)])
+def test_no_estimate_goes_on_where_a_discarded_harmonic_meets_a_narrow_mode(
+    ratio: float, go_on: bool
+) -> None:
+    stiffness = 1e4 * np.array([[2.0, -1.0], [-1.0, 9.0]])
+    structure = ss.Structure(np.eye(2), stiffness, ss.ModalDamping(ratio), ["a", "b"])
+    model = ss.Model(
+        structure, [ss.Jenkins("a", stiffness=1e3, slip_force=0.02)], [ss.Force("a", 1.0)]
+    )
+    # The second mode lies at the third harmonic, a step of which is 0.45 rad/s.
+    middle = ss.natural_frequencies(model)[1] / 3.0
+    omega = middle + 0.15 * (np.arange(16) - 11.5)
+    frf = ss.forced_response(model, omega, 1)
+    errors = np.array([frf.error_estimate(dof) for dof in frf.dofs])
+    beside = {i for i in carried_on(errors) if i in (11, 12)}
+    assert bool(beside) == go_on
+
+
 @pytest.mark.slow
 def test_loaded_and_named_dofs_drive_automatic_harmonics_and_steps() -> None:
     blade = ss.reference.turbine_blade()

@@ -38,3 +38,40 @@ def test_rigid_contacts_hold_their_dofs_or_are_refused(
     for absurd in (1e17, 1e100, 1e308):
         with pytest.raises(ss.ModelError, match="entries of absurd size"):
             ends(absurd)
+
+
+def sliding(size: int, contacts: int, ratio: float) -> ss.Model:
+    """Return an uneven chain whose contacts, so many times as stiff, slip at low frequencies."""
+    rng = np.random.default_rng(0)
+    k = 1e4 * rng.uniform(0.8, 1.2, size + 1)
+    springs = np.diag(k[:-1] + k[1:]) - np.diag(k[1:-1], 1) - np.diag(k[1:-1], -1)
+    dofs = [f"x{number}" for number in range(size)]
+    structure = ss.Structure(np.eye(size), springs, ss.ModalDamping(1e-2), dofs)
+    places = np.linspace(1, size - 2, contacts).astype(int) if contacts > 1 else [size // 2]
+    pads = [
+        ss.Jenkins(dofs[place], stiffness=1e4 * ratio, slip_force=float(rng.uniform(0.2, 0.6)))
+        for place in places
+    ]
+    return ss.Model(structure, pads, [ss.Force(dofs[size // 3], 2.0)])
+
+
+@pytest.mark.slow
+def test_orbits_of_rigid_contacts_are_given_up_before_their_matrices_take_a_quarter_minute() -> (
+    None
+):
+    frf = ss.forced_response(sliding(200, 1, 1e7), [20.0])
+    # The amplitude of the exact orbit.
+    assert frf.status[0] == "effort limit"
+    assert abs(frf.amplitude("x0")[0] - 2.5980e-4) < 5.0 * frf.error_estimate("x0")[0]
+
+
+def test_stalled_points_name_the_contacts_that_are_nearly_rigid() -> None:
+    frf = ss.forced_response(sliding(6, 2, 1e9), [20.0], 7)
+    assert frf.status[0] == "stalled"
+    (told,) = [one for one in frf.diagnostics if one.code == "rigid-contacts"]
+    assert told.severity == "caution"
+    assert told.data["points"] == 1
+    assert 1e8 < told.data["ratio"] < 1e9
+    assert str(told).startswith("Nearly rigid: 'jenkins'")
+    solved = ss.forced_response(sliding(6, 2, 1e5), [20.0], 7)
+    assert not any(one.code == "rigid-contacts" for one in solved.diagnostics)

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from stickslip import _core
+from stickslip.analyses.rigid_contacts import rigid_contacts
 from stickslip.analyses.texts import TEXTS, told
 from stickslip.checks import listed
 from stickslip.model import Coulomb, Model, StructuralDamper, natural_frequencies
@@ -66,6 +67,7 @@ def balance_assumptions(
                 _observed(model, dofs),
                 uniqueness(model),
                 _truncation(dofs, arrays, single=single),
+                rigid_contacts(model, arrays),
                 missed_tolerances(arrays.status, "points"),
             )
         )
