@@ -63,13 +63,14 @@ impl ForcedBalance<'_> {
         // Where harmonics are chosen, every estimate decides by itself.
         let beside = whole.beside().filter(|_| self.control.is_fixed());
         let solution = Unknowns { harmonics: harmonics.clone(), values: x.to_vec() };
-        if let Some((first, growth)) = beside.zip(self.neighbour.served(point)) {
-            let discarded = whole.discarded(harmonics);
-            let (piece, of) = (&mut self.neighbour, self.model.compliance());
-            if let Some(errors) = piece.continued(point, &solution, of, discarded) {
+        if beside.is_some() {
+            let (discarded, of) = (whole.discarded(harmonics), self.model.compliance());
+            if let Some(errors) = self.neighbour.continued(point, &solution, of, discarded) {
                 point.error_estimate = errors;
                 return Ok(true);
             }
+        }
+        if let Some((first, growth)) = beside.zip(self.neighbour.served(point)) {
             let estimate = self.extended(&solution, solved, point, first)?;
             let Some(estimate) = estimate else { return Ok(false) };
             if estimate.keeps_states {

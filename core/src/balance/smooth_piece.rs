@@ -19,8 +19,12 @@ const STEPS: f64 = 1.01;
 const SAME_MOTION: f64 = 0.25;
 /// The same of the share of the period in which it slips.
 const SAME_SLIP: f64 = 0.15;
-/// Change of estimates from one point to the next up to which they go on.
+/// Change of the estimates of all DOFs from one point to the next up to which they go on, …
 const CHANGE: f64 = 1.5;
+/// … that of one of them, …
+const CHANGE_OF_ONE: f64 = 2.0;
+/// … if it is no less than this share of the largest.
+const COUNTS: f64 = 1e-2;
 
 /// A point with an estimate of its own.
 pub(super) struct Estimated {
@@ -104,8 +108,12 @@ impl SmoothPiece {
         }
         let size = |errors: &[f64]| errors.iter().sum::<f64>();
         let goes_on = |[before, now]: [f64; 2]| (now / before).powf(share);
-        let whole = goes_on([size(errors), size(&last.errors)]);
-        if !((1.0 / CHANGE..=CHANGE).contains(&whole)
+        let largest = errors.iter().chain(&last.errors).copied().fold(0.0, f64::max);
+        let smooth = errors.iter().zip(&last.errors).all(|(&before, &now)| {
+            before.max(now) < COUNTS * largest || is_within(goes_on([before, now]), CHANGE_OF_ONE)
+        });
+        if !(smooth
+            && is_within(goes_on([size(errors), size(&last.errors)]), CHANGE)
             && last.moves_as(point, solution)
             && is_clear([last.omega, point.omega], compliance, discarded))
         {
@@ -119,6 +127,11 @@ impl SmoothPiece {
         self.went_on = true;
         Some(estimates.collect())
     }
+}
+
+/// Whether a change is at most one by a factor.
+fn is_within(change: f64, factor: f64) -> bool {
+    (1.0 / factor..=factor).contains(&change)
 }
 
 /// Whether no discarded harmonic comes to a mode that it passes within a step.
