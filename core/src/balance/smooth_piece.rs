@@ -121,8 +121,13 @@ impl SmoothPiece {
         }
         let both = errors.iter().zip(&last.errors);
         let estimates = both.map(|(&before, &now)| {
-            // What falls may rise again; a DOF that does not move has neither.
-            now * goes_on([before, now]).max(1.0).min(CHANGE)
+            // What falls may rise again.
+            let growth = goes_on([before, now]);
+            if growth > 1.0 {
+                now * growth.min(CHANGE)
+            } else {
+                now
+            }
         });
         self.went_on = true;
         Some(estimates.collect())
