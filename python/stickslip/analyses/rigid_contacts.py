@@ -22,13 +22,13 @@ def rigid_contacts(model: Model, arrays: Arrays) -> Diagnostic | None:
         return None
     structure = model.structure
     held = dict(zip(structure.dofs, np.abs(structure.stiffness.diagonal()), strict=True))
-    ratios = {}
+    ratios: dict[str, float] = {}
     for contact in model.contacts:
         if not isinstance(contact, Jenkins):
             continue
         beside = [held[dof] for dof in (contact.dof, contact.other) if dof in held]
         if beside and min(beside) > 0.0:
-            ratios[contact.name] = float(np.max(contact.stiffness) / min(beside))
+            ratios[str(contact.name)] = float(np.max(contact.stiffness) / min(beside))
     rigid = [name for name, ratio in ratios.items() if ratio > RIGID]
     if not rigid:
         return None
