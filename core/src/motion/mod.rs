@@ -18,6 +18,7 @@ mod linear_phase;
 mod loop_disturbance;
 mod microslip;
 mod modal_system;
+mod modal_way;
 mod output;
 mod pace;
 mod phase;

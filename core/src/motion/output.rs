@@ -6,6 +6,7 @@ use super::flow_next::rescale;
 use super::history::{History, Trace, TransientSettings};
 use super::microslip::Turn;
 use super::modal_system::{dot, ModalSystem};
+use super::modal_way::ModalWay;
 use super::polynomial::{sign_changes, value};
 use super::runge_kutta::RungeKutta;
 use super::state::State;
@@ -195,6 +196,8 @@ pub(crate) struct Extremes {
     series: Vec<f64>,
     slope: Vec<f64>,
     zeros: Vec<f64>,
+    /// Of the modes on a stretch.
+    way: ModalWay,
 }
 
 impl Extremes {
@@ -205,7 +208,11 @@ impl Extremes {
         shapes: &[Vec<f64>],
         ranges: &mut [[f64; 2]],
     ) {
+        segment.series.write_way(segment.length, &mut self.way);
         for (shape, range) in shapes.iter().zip(ranges) {
+            if self.way.widen(shape, range) {
+                continue;
+            }
             segment.series.project(shape.iter().copied(), segment.length, &mut self.series);
             self.widen(range);
         }

@@ -57,6 +57,17 @@ pub struct PeriodicOrbits<'a> {
     pub(crate) profile: Profile,
 }
 
+/// What a pass along an orbit tells.
+struct Reading {
+    orbit: Orbit,
+    /// Whether a contact in a plane touches its limit.
+    touches: bool,
+    /// Closing error, relative to the motion, and the step that would close it, if there is one.
+    closing: f64,
+    error: f64,
+    left: Option<Vec<f64>>,
+}
+
 impl<'a> Plan<'a> {
     /// Orbits that tell `progress` how far they are.
     pub(super) fn orbits(self, progress: &'a Progress<'a>) -> PeriodicOrbits<'a> {
@@ -183,16 +194,24 @@ impl<'a> PeriodicOrbits<'a> {
             (y, iterations, chosen)
         });
         self.profile.evaluations += shooting.flow.steps;
-        let Some((y, iterations, chosen)) = solved else {
+        let Some((mut y, mut iterations, chosen)) = solved else {
             return Ok(self.empty(omega, PointStatus::NotComputed));
         };
         if chosen == Chosen::Lost && shooting.interrupted() {
             return Ok(self.empty(omega, PointStatus::NotComputed));
         }
-        let mut residual = vec![0.0; y.len()];
-        shooting.residual(&y, &mut residual);
-        let size = crate::solve::norm(&y).max(f64::MIN_POSITIVE);
-        let closing = crate::solve::norm(&residual) / size;
+        let mut read = self.read(&mut shooting, omega, &y);
+        // The last step of Newton's method was not looked at.
+        if read.error > self.newton().tolerance && read.closing <= CLOSED && chosen == Chosen::Inside {
+            let mut closer = y.clone();
+            let report = newton(&mut shooting, &mut closer, self.newton());
+            iterations += report.iterations;
+            if report.outcome == Outcome::Converged {
+                y = closer;
+            }
+            read = self.read(&mut shooting, omega, &y);
+        }
+        let Reading { mut orbit, touches, closing, left, .. } = read;
         if closing.is_nan() || closing > CLOSED || chosen == Chosen::Lost {
             let spent = shooting.flow.is_spent();
             let status = if spent { PointStatus::StepsLimit } else { PointStatus::Stalled };
@@ -201,13 +220,12 @@ impl<'a> PeriodicOrbits<'a> {
             orbit.response.iterations = iterations;
             return Ok(orbit);
         }
-        let mut left = vec![0.0; y.len()];
-        if !shooting.solve(&residual, &mut left) {
+        let Some(left) = left else {
             // Contacts have let go of a body that they alone hold: it may as well stand elsewhere.
             let floats = !system.rigid_modes().is_empty();
             let status = if floats { PointStatus::Free } else { PointStatus::Singular };
             return Ok(self.empty(omega, status));
-        }
+        };
         let known =
             match self.plan.rotation {
                 Some(_) => None,
@@ -216,12 +234,6 @@ impl<'a> PeriodicOrbits<'a> {
                 })?),
             };
         self.profile.factorisations += shooting.matrices;
-        let start = std::time::Instant::now();
-        let empty = self.empty(omega, PointStatus::Converged);
-        let (settings, quadrature) = (&self.plan.settings, &mut self.quadrature);
-        let (mut orbit, touches) =
-            empty.read(&mut shooting, &y, settings, self.plan.observe, quadrature);
-        self.profile.recovery += start.elapsed();
         orbit.response.residual = closing;
         orbit.response.iterations = iterations;
         orbit.response.error_estimate = left_error(&shooting, self.plan.observe, &left);
@@ -236,6 +248,27 @@ impl<'a> PeriodicOrbits<'a> {
             }
         }
         Ok(orbit)
+    }
+
+    /// Passes along the orbit that closes at the unknowns `y` and reads it off.
+    fn read(&mut self, shooting: &mut Shooting<'_>, omega: f64, y: &[f64]) -> Reading {
+        let start = std::time::Instant::now();
+        let empty = self.empty(omega, PointStatus::Converged);
+        let (settings, quadrature) = (&self.plan.settings, &mut self.quadrature);
+        let (orbit, touches) = empty.read(shooting, y, settings, self.plan.observe, quadrature);
+        self.profile.recovery += start.elapsed();
+        let mut residual = vec![0.0; y.len()];
+        shooting.residual(y, &mut residual);
+        let size = norm(y).max(f64::MIN_POSITIVE);
+        let mut left = vec![0.0; y.len()];
+        let determined = residual.iter().all(|r| r.is_finite()) && shooting.solve(&residual, &mut left);
+        Reading {
+            orbit,
+            touches,
+            closing: norm(&residual) / size,
+            error: norm(&left) / size,
+            left: determined.then_some(left),
+        }
     }
 
     /// The orbit whose sliders are displaced by `sliders` \[m\] from rest, as far as Coulomb allows;

@@ -130,6 +130,11 @@ impl<'a> Shooting<'a> {
         state
     }
 
+    /// Whether the flow is confined to the part of a period after which sectors have changed their roles.
+    pub(super) fn rotates(&self) -> bool {
+        self.rotation.is_some()
+    }
+
     /// Has the span begin a share of it later.
     pub(super) fn begin_later(&mut self, share: f64) {
         self.begin = share * self.span;
@@ -211,7 +216,17 @@ impl<'a> Shooting<'a> {
 
     /// Coordinates after the span, mirrored under half-wave symmetry.
     pub(super) fn image(&mut self, y: &[f64]) -> Option<Vec<f64>> {
-        if let Some((_, image, slipped)) = self.last.as_ref().filter(|(last, ..)| last == y) {
+        self.observed_image(y, None)
+    }
+
+    /// The same; what the flow passes is shown to an observer.
+    pub(super) fn observed_image(
+        &mut self,
+        y: &[f64],
+        mut observe: Option<&mut dyn FnMut(&FlowEvent<'_>)>,
+    ) -> Option<Vec<f64>> {
+        let known = self.last.as_ref().filter(|(last, ..)| observe.is_none() && last == y);
+        if let Some((_, image, slipped)) = known {
             self.slipped.clone_from(slipped);
             if std::mem::take(&mut self.earlier) {
                 self.derivative = None;
@@ -231,6 +246,9 @@ impl<'a> Shooting<'a> {
         let run = self.flow.run(&mut state, self.begin + self.span, &mut |passage| {
             LinearPhase::record(phases, system, &passage);
             memory.follow(&passage);
+            if let Some(observe) = &mut observe {
+                observe(&passage);
+            }
         });
         self.steps = self.flow.steps - before;
         self.slipped = (0..self.limits.len())
@@ -351,6 +369,11 @@ impl System for Shooting<'_> {
         let stretches = self.phases.iter().filter(|phase| phase.is_linear()).count();
         let (size, system) = (self.coordinates.size(), self.coordinates.system());
         matrix_price(system, size, stretches, self.steps)
+    }
+
+    /// An orbit is passed along once more where it is read.
+    fn is_seen_again(&self) -> bool {
+        true
     }
 
     fn interrupted(&self) -> bool {
