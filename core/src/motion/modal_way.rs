@@ -1,7 +1,9 @@
 //! What the modes do over a stretch of a motion: enough to tell where most displacements have no extreme.
 
-use super::modal_system::dot;
 use super::power_series::PowerSeries;
+
+/// Numbers that are summed side by side.
+const LANES: usize = 8;
 
 /// Displacements at both ends of a stretch, velocities at its start, and the most that both change by, mode
 /// by mode; velocities per length of the stretch.
@@ -48,26 +50,66 @@ impl PowerSeries {
 }
 
 impl ModalWay {
-    /// Widens a range by the displacement of a shape, if it has no extreme inside the stretch or stays within
-    /// the range.
-    pub(super) fn widen(&self, shape: &[f64], range: &mut [f64; 2]) -> bool {
-        let start = dot(shape, &self.start);
-        let reach = sum_of_sizes(shape, &self.reach);
-        if start + reach <= range[1] && start - reach >= range[0] {
-            return true;
-        }
-        if dot(shape, &self.velocity).abs() <= sum_of_sizes(shape, &self.bend) {
-            return false;
-        }
-        for value in [start, dot(shape, &self.end)] {
-            range[0] = range[0].min(value);
-            range[1] = range[1].max(value);
-        }
-        true
+    /// Widens the ranges of all shapes that have no extreme inside the stretch, or stay within their range;
+    /// `open` are the others.
+    pub(super) fn widen(
+        &self,
+        shapes: &[Vec<f64>],
+        ranges: &mut [[f64; 2]],
+        open: &mut Vec<usize>,
+    ) {
+        open.clear();
+        pulp::Arch::new().dispatch(Widen { way: self, shapes, ranges, open });
     }
 }
 
-/// `Σ |a| b`.
-fn sum_of_sizes(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a.abs() * b).sum()
+/// A closure would be no part of what vector instructions are chosen for.
+struct Widen<'a> {
+    way: &'a ModalWay,
+    shapes: &'a [Vec<f64>],
+    ranges: &'a mut [[f64; 2]],
+    open: &'a mut Vec<usize>,
+}
+
+impl pulp::NullaryFnOnce for Widen<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let ModalWay { start, end, velocity, reach, bend } = self.way;
+        for (number, (shape, range)) in self.shapes.iter().zip(self.ranges).enumerate() {
+            let [from, reach] = sums(shape, [start, reach]);
+            if from + reach <= range[1] && from - reach >= range[0] {
+                continue;
+            }
+            let [velocity, bend] = sums(shape, [velocity, bend]);
+            if velocity.abs() <= bend {
+                self.open.push(number);
+                continue;
+            }
+            let [to, _] = sums(shape, [end, end]);
+            for value in [from, to] {
+                range[0] = range[0].min(value);
+                range[1] = range[1].max(value);
+            }
+        }
+    }
+}
+
+/// `Σ a b` and `Σ |a| c`, some terms side by side.
+#[inline(always)]
+fn sums(a: &[f64], [b, c]: [&Vec<f64>; 2]) -> [f64; 2] {
+    let mut sums = [[0.0; LANES]; 2];
+    let blocks = a.chunks_exact(LANES).zip(b.chunks_exact(LANES)).zip(c.chunks_exact(LANES));
+    for ((a, b), c) in blocks {
+        for i in 0..LANES {
+            sums[0][i] += a[i] * b[i];
+            sums[1][i] += a[i].abs() * c[i];
+        }
+    }
+    for i in a.len() / LANES * LANES..a.len() {
+        sums[0][0] += a[i] * b[i];
+        sums[1][0] += a[i].abs() * c[i];
+    }
+    sums.map(|all| all.iter().sum())
 }

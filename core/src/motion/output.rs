@@ -196,8 +196,9 @@ pub(crate) struct Extremes {
     series: Vec<f64>,
     slope: Vec<f64>,
     zeros: Vec<f64>,
-    /// Of the modes on a stretch.
+    /// What the modes do on a stretch, and shapes that may have an extreme there.
     way: ModalWay,
+    open: Vec<usize>,
 }
 
 impl Extremes {
@@ -209,13 +210,14 @@ impl Extremes {
         ranges: &mut [[f64; 2]],
     ) {
         segment.series.write_way(segment.length, &mut self.way);
-        for (shape, range) in shapes.iter().zip(ranges) {
-            if self.way.widen(shape, range) {
-                continue;
-            }
-            segment.series.project(shape.iter().copied(), segment.length, &mut self.series);
-            self.widen(range);
+        let mut open = std::mem::take(&mut self.open);
+        self.way.widen(shapes, ranges, &mut open);
+        for &number in &open {
+            let shape = shapes[number].iter().copied();
+            segment.series.project(shape, segment.length, &mut self.series);
+            self.widen(&mut ranges[number]);
         }
+        self.open = open;
     }
 
     /// Widens the range of each contact displacement.

@@ -47,12 +47,12 @@ pub struct PowerSeries {
     /// … the length of τ over which their forces hold, and the first ones to try: behind a reversal, and else.
     pub(super) window: f64,
     pub(super) tried: [f64; 2],
-    /// Displacements of one power; and which forces follow which displacements, with which factors, force
-    /// after force.
-    pub(super) displaced: Vec<f64>,
-    /// Points whose forces have a coefficient of one power, and what these are for the modes.
-    pub(super) acting: Vec<(usize, f64)>,
-    pub(super) modal_force: Vec<f64>,
+    /// Displacements of two powers.
+    pub(super) displaced: [Vec<f64>; 2],
+    /// Points whose forces have coefficients of these, and what they are for the modes.
+    pub(super) acting: Vec<(usize, [f64; 2])>,
+    pub(super) modal_force: [Vec<f64>; 2],
+    /// Which forces follow which displacements, with which factors, force after force.
     pub(super) springs: Vec<(usize, usize, f64)>,
 }
 
@@ -82,9 +82,9 @@ impl PowerSeries {
             branches: Vec::new(),
             window: LONGEST,
             tried: [FRESH, LONGEST_MICROSLIP],
-            displaced: Vec::new(),
+            displaced: [Vec::new(), Vec::new()],
             acting: Vec::new(),
-            modal_force: Vec::new(),
+            modal_force: [Vec::new(), Vec::new()],
             springs: Vec::new(),
         };
         series.set_rate(system, rate);

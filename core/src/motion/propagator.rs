@@ -18,7 +18,7 @@ const CLOSE: f64 = 1.0;
 /// Term of such a series, relative to the states, that is none.
 const ROUNDING: f64 = 1e-18;
 /// Columns that such a series takes at a time.
-const COLUMNS: usize = 32;
+const COLUMNS: usize = 16;
 /// Numbers that are summed side by side.
 const LANES: usize = 8;
 
@@ -64,43 +64,37 @@ impl Equations {
     /// Derivatives of states, one column each, times a duration.
     fn rates_of(&self, states: &Mat<f64>, duration: f64) -> Mat<f64> {
         let mut out = Mat::<f64>::zeros(states.nrows(), states.ncols());
-        self.write_rates(states, duration, &mut out);
+        self.write_forces(states, duration, &mut out);
+        for j in 0..states.ncols() {
+            self.complete(states.col_as_slice(j), duration, out.col_as_slice_mut(j));
+        }
         out
     }
 
-    /// The same, into a matrix of their size.
-    fn write_rates(&self, states: &Mat<f64>, duration: f64, out: &mut Mat<f64>) {
-        let modes = self.scale.len();
-        let mut lower = out.get_mut(modes.., ..);
-        let (displacement, velocity) = states.split_at_row(modes);
-        let minus = -duration;
-        matmul(
-            lower.as_mut(),
-            Accum::Replace,
-            self.stiffness.as_ref(),
-            displacement,
-            minus,
-            Par::Seq,
-        );
+    /// Accelerations by the stiffness, and by a damping that couples modes, times a duration.
+    fn write_forces(&self, states: &Mat<f64>, duration: f64, out: &mut Mat<f64>) {
+        let (displacement, velocity) = states.split_at_row(self.scale.len());
+        let mut lower = out.get_mut(self.scale.len().., ..);
+        let (own, minus) = (self.stiffness.as_ref(), -duration);
+        matmul(lower.as_mut(), Accum::Replace, own, displacement, minus, Par::Seq);
         if let Damping::Full(damping) = &self.damping {
             matmul(lower.as_mut(), Accum::Add, damping.as_ref(), velocity, minus, Par::Seq);
         }
-        let damping = match &self.damping {
-            Damping::Diagonal(damping) => damping.as_slice(),
-            Damping::Full(_) => &[],
-        };
-        pulp::Arch::new().dispatch(|| {
-            for j in 0..states.ncols() {
-                let velocity = &states.col_as_slice(j)[modes..];
-                let (upper, lower) = out.col_as_slice_mut(j).split_at_mut(modes);
-                for ((upper, s), v) in upper.iter_mut().zip(&self.scale).zip(velocity) {
-                    *upper = duration * s * v;
-                }
-                for ((lower, c), v) in lower.iter_mut().zip(damping).zip(velocity) {
-                    *lower -= duration * c * v;
-                }
+    }
+
+    /// Velocities, and accelerations by a damping of single modes, times a duration.
+    #[inline(always)]
+    fn complete(&self, state: &[f64], duration: f64, out: &mut [f64]) {
+        let modes = self.scale.len();
+        let ((upper, lower), velocity) = (out.split_at_mut(modes), &state[modes..]);
+        for ((upper, s), v) in upper.iter_mut().zip(&self.scale).zip(velocity) {
+            *upper = duration * s * v;
+        }
+        if let Damping::Diagonal(damping) = &self.damping {
+            for ((lower, c), v) in lower.iter_mut().zip(damping).zip(velocity) {
+                *lower -= duration * c * v;
             }
-        });
+        }
     }
 
     /// `[M, N]` times a duration.
@@ -142,23 +136,34 @@ impl Equations {
         let modes = self.scale.len();
         // Terms fall at once: over a stretch this short the states keep their size.
         let enough = ROUNDING * states.norm_l2();
+        let sizes = |count: usize| [(); 2].map(|()| Mat::<f64>::zeros(2 * modes, count));
+        let [mut before, mut term] = sizes(COLUMNS.min(states.ncols()));
         for first in (0..states.ncols()).step_by(COLUMNS) {
             let count = COLUMNS.min(states.ncols() - first);
-            let mut before = states.get(.., first..first + count).to_owned();
-            let mut term = Mat::<f64>::zeros(2 * modes, count);
+            if count < term.ncols() {
+                [before, term] = sizes(count);
+            }
+            for j in 0..count {
+                before.col_as_slice_mut(j).copy_from_slice(states.col_as_slice(first + j));
+            }
             let mut power = 1.0;
             loop {
-                self.write_rates(&before, duration / power, &mut term);
+                self.write_forces(&before, duration / power, &mut term);
                 if power == 1.0 {
                     let inputs = inputs.get(.., first..first + count);
                     let driven = term.get_mut(modes.., ..);
                     matmul(driven, Accum::Add, self.input.as_ref(), inputs, duration, Par::Seq);
                 }
-                let mut square = 0.0;
-                for j in 0..count {
-                    square += add(term.col_as_slice(j), states.col_as_slice_mut(first + j));
-                }
-                let size = square.sqrt();
+                let (before_it, duration) = (&before, duration / power);
+                let add = AddTerm {
+                    equations: self,
+                    before: before_it,
+                    duration,
+                    term: &mut term,
+                    states,
+                    first,
+                };
+                let size = pulp::Arch::new().dispatch(add);
                 let goes_on = size > enough && size.is_finite();
                 if !goes_on {
                     break;
@@ -170,24 +175,48 @@ impl Equations {
     }
 }
 
-/// Adds numbers to others; the sum of their squares.
-fn add(numbers: &[f64], to: &mut [f64]) -> f64 {
-    let mut squares = [0.0; LANES];
-    pulp::Arch::new().dispatch(|| {
-        let rest = numbers.chunks_exact(LANES).remainder();
-        let mut blocks = to.chunks_exact_mut(LANES);
-        for (to, numbers) in blocks.by_ref().zip(numbers.chunks_exact(LANES)) {
-            for ((to, x), square) in to.iter_mut().zip(numbers).zip(&mut squares) {
-                *to += x;
-                *square += x * x;
-            }
+/// Completes a term of a power series and adds it to states; its size. A closure would be no part of what
+/// vector instructions are chosen for.
+struct AddTerm<'a> {
+    equations: &'a Equations,
+    before: &'a Mat<f64>,
+    duration: f64,
+    term: &'a mut Mat<f64>,
+    states: &'a mut Mat<f64>,
+    /// First of the columns of the states.
+    first: usize,
+}
+
+impl pulp::NullaryFnOnce for AddTerm<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn call(self) -> f64 {
+        let mut squares = [0.0; LANES];
+        for j in 0..self.term.ncols() {
+            let term = self.term.col_as_slice_mut(j);
+            self.equations.complete(self.before.col_as_slice(j), self.duration, term);
+            add(term, self.states.col_as_slice_mut(self.first + j), &mut squares);
         }
-        for ((to, x), square) in blocks.into_remainder().iter_mut().zip(rest).zip(&mut squares) {
+        squares.iter().sum::<f64>().sqrt()
+    }
+}
+
+/// Adds numbers to others, and their squares to sums.
+#[inline(always)]
+fn add(numbers: &[f64], to: &mut [f64], squares: &mut [f64; LANES]) {
+    let rest = numbers.chunks_exact(LANES).remainder();
+    let mut blocks = to.chunks_exact_mut(LANES);
+    for (to, numbers) in blocks.by_ref().zip(numbers.chunks_exact(LANES)) {
+        for ((to, x), square) in to.iter_mut().zip(numbers).zip(&mut *squares) {
             *to += x;
             *square += x * x;
         }
-    });
-    squares.iter().sum()
+    }
+    for ((to, x), square) in blocks.into_remainder().iter_mut().zip(rest).zip(squares) {
+        *to += x;
+        *square += x * x;
+    }
 }
 
 impl Propagators {
