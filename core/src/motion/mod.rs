@@ -47,6 +47,7 @@ pub use microslip::{Reversals, Turn};
 pub use modal_system::{ContactState, ModalSystem};
 pub(crate) use output::Extremes;
 pub use power_series::PowerSeries;
+pub(crate) use power_series::Values;
 pub(crate) use propagator::Propagators;
 pub use runge_kutta::RungeKutta;
 pub use state::State;

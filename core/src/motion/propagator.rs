@@ -18,7 +18,7 @@ const CLOSE: f64 = 1.0;
 /// Term of such a series, relative to the states, that is none.
 const ROUNDING: f64 = 1e-18;
 /// Columns that such a series takes at a time.
-const COLUMNS: usize = 16;
+const COLUMNS: usize = 48;
 /// Numbers that are summed side by side.
 const LANES: usize = 8;
 

@@ -202,7 +202,10 @@ impl<'a> PeriodicOrbits<'a> {
         }
         let mut read = self.read(&mut shooting, omega, &y);
         // The last step of Newton's method was not looked at.
-        if read.error > self.newton().tolerance && read.closing <= CLOSED && chosen == Chosen::Inside {
+        if read.error > self.newton().tolerance
+            && read.closing <= CLOSED
+            && chosen == Chosen::Inside
+        {
             let mut closer = y.clone();
             let report = newton(&mut shooting, &mut closer, self.newton());
             iterations += report.iterations;
@@ -261,7 +264,8 @@ impl<'a> PeriodicOrbits<'a> {
         shooting.residual(y, &mut residual);
         let size = norm(y).max(f64::MIN_POSITIVE);
         let mut left = vec![0.0; y.len()];
-        let determined = residual.iter().all(|r| r.is_finite()) && shooting.solve(&residual, &mut left);
+        let determined =
+            residual.iter().all(|r| r.is_finite()) && shooting.solve(&residual, &mut left);
         Reading {
             orbit,
             touches,
