@@ -7,10 +7,8 @@ use super::rotation::Rotation;
 use super::settings::OrbitSettings;
 use super::shooting::Shooting;
 use super::sliders::{choose, Assumption, Chosen};
-use super::start::{later, start_of};
-use crate::balance::{
-    ForcedBalance, HarmonicChoice, Kept, Point, PointStatus, Progress, Settings, Unknowns,
-};
+use super::start::start_of;
+use crate::balance::{Kept, Point, PointStatus, Progress, Unknowns};
 use crate::contact::Residual;
 use crate::model::Model;
 use crate::motion::{ModalSystem, State};
@@ -20,12 +18,6 @@ use crate::Error;
 use faer::c64;
 use std::sync::Arc;
 
-/// Harmonics of the balance that a cold start comes from: at least, at most, and units of the fastest rate
-/// per period for each. Where passes along the orbit are long, more harmonics save some of them.
-const START_HARMONICS: [usize; 2] = [9, 25];
-const PER_HARMONIC: f64 = 100.0;
-/// Closing error, relative to the motion, of a start that needs no better one.
-const NEAR: f64 = 1e-4;
 /// Rounds of following the motion itself, and spans in the first: each round doubles them.
 const ROUNDS: usize = 9;
 const FIRST_SPANS: usize = 4;
@@ -47,8 +39,8 @@ pub struct PeriodicOrbits<'a> {
     pub(super) sliders: Vec<f64>,
     pub(super) everywhere: Vec<usize>,
     /// The last balance that an orbit began with, and whether a neighbour was no better.
-    balanced: Option<Unknowns>,
-    beyond: bool,
+    pub(super) balanced: Option<Unknowns>,
+    pub(super) beyond: bool,
     pub(super) quadrature: Quadrature,
     pub(super) progress: &'a Progress<'a>,
     pub(super) kept: Option<&'a Kept<Orbit>>,
@@ -193,7 +185,8 @@ impl<'a> PeriodicOrbits<'a> {
             let chosen = choose(&mut shooting, assumption, &mut y, newton, &mut iterations);
             (y, iterations, chosen)
         });
-        self.profile.evaluations += shooting.flow.steps;
+        let steps = shooting.flow.steps;
+        self.profile.evaluations += steps;
         let Some((mut y, mut iterations, chosen)) = solved else {
             return Ok(self.empty(omega, PointStatus::NotComputed));
         };
@@ -214,6 +207,7 @@ impl<'a> PeriodicOrbits<'a> {
             }
             read = self.read(&mut shooting, omega, &y);
         }
+        self.profile.evaluations += shooting.flow.steps - steps;
         let Reading { mut orbit, touches, closing, left, .. } = read;
         if closing.is_nan() || closing > CLOSED || chosen == Chosen::Lost {
             let spent = shooting.flow.is_spent();
@@ -358,69 +352,5 @@ impl<'a> PeriodicOrbits<'a> {
             }
         }
         Some((y, iterations))
-    }
-
-    /// A start, or that of harmonic balance if it is better: where but one motion is possible, and each
-    /// further step of Newton's method is dear. Behind a point at which it was, neighbours are not asked.
-    fn nearer_start(
-        &mut self,
-        shooting: &mut Shooting<'_>,
-        omega: f64,
-        neighbour: &State,
-    ) -> Vec<f64> {
-        let misses = |shooting: &mut Shooting<'_>, y: &[f64]| {
-            let mut residual = vec![0.0; y.len()];
-            shooting.residual(y, &mut residual);
-            norm(&residual) / norm(y)
-        };
-        let y = shooting.unknowns(neighbour);
-        let own = if self.beyond { f64::INFINITY } else { misses(shooting, &y) };
-        let near = own <= NEAR || (!self.beyond && shooting.price() < 1.0);
-        if near || !self.plan.unique {
-            return y;
-        }
-        let other = shooting.unknowns(&self.harmonic_start(omega, 0.0));
-        let balanced = misses(shooting, &other);
-        if balanced < own {
-            self.beyond = balanced <= NEAR;
-            other
-        } else {
-            y
-        }
-    }
-
-    /// The state of a harmonic balance of low order at an angle of the period; rest where it
-    /// has none.
-    pub(super) fn harmonic_start(&mut self, omega: f64, angle: f64) -> State {
-        let rest = State::rest(&self.plan.system);
-        let forced = self.plan.model.compliance().forced_harmonics();
-        let [least, most] = START_HARMONICS;
-        let turn = std::f64::consts::TAU * self.plan.system.rate(omega) / omega;
-        let suited = ((turn / PER_HARMONIC) as usize).clamp(least, most);
-        let highest = forced.last().copied().unwrap_or(1).max(suited);
-        let settings = Settings {
-            harmonics: HarmonicChoice::Fixed(highest),
-            max_harmonics: highest,
-            residual: self.plan.settings.residual,
-            ..Settings::default()
-        };
-        let Ok(mut balance) = ForcedBalance::new(self.plan.model, settings, &self.everywhere)
-        else {
-            return rest;
-        };
-        balance = balance.watched(self.progress).unjudged();
-        let known = self.balanced.take().filter(|_| self.plan.unique);
-        let found = balance.solve(omega, known.as_ref());
-        self.balanced = found.as_ref().ok().and_then(|point| point.unknowns().cloned());
-        match found {
-            Ok(point) if point.status == PointStatus::Converged => start_of(
-                self.plan.with_history.as_deref().unwrap_or(self.plan.model),
-                &self.plan.system,
-                self.plan.settings.residual,
-                &later(&point, angle),
-                balance.half_wave(),
-            ),
-            _ => rest,
-        }
     }
 }

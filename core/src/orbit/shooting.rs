@@ -177,33 +177,6 @@ impl<'a> Shooting<'a> {
         self.last = None;
     }
 
-    /// Completes what contacts without sliders remember behind segments that have all been followed, in
-    /// the image and the derivative of each.
-    pub(super) fn join<'s>(
-        &mut self,
-        starts: &[f64],
-        segments: impl ExactSizeIterator<Item = (&'s mut Vec<f64>, &'s mut Mat<f64>)>,
-    ) -> Option<()> {
-        let (size, count) = (self.coordinates.size(), segments.len());
-        if count == 1 || LoopMemory::places(self.coordinates.system()) == 0 {
-            return Some(());
-        }
-        self.memory.join()?;
-        let all = System::size(self);
-        let segments = segments.zip(starts.chunks_exact(all)).enumerate();
-        for (number, ((image, derivative), start)) in segments {
-            let side = if self.symmetric && number + 1 == count { -1.0 } else { 1.0 };
-            let numbers = self.memory.behind(number, start);
-            image[size..].iter_mut().zip(numbers).for_each(|(to, own)| *to = side * own);
-            if derivative.nrows() > 0 {
-                self.memory.derive(number, derivative);
-                let mut rows = derivative.get_mut(size.., ..);
-                rows *= faer::Scale(side);
-            }
-        }
-        Some(())
-    }
-
     /// Leaves what elements hold that never slip out of a derivative.
     pub(super) fn hold_origins(&self, matrix: &mut Mat<f64>) {
         self.memory.hold_origins(matrix);
