@@ -5,8 +5,8 @@ Usage::
     python benchmarks/orbits.py             # all of them
     python benchmarks/orbits.py beam 16     # some
 
-The beam of the dissertation, and a clamped bar of finite elements on 16 and on 64 Jenkins elements, which
-component modes reduce to the contacts. Processor times per point, medians of several runs in turn.
+The beam of the dissertation, and a clamped bar of finite elements on 16 and on 64 Jenkins elements,
+which component modes reduce to the contacts. Processor times per point, medians of runs in turn.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def beam() -> tuple[ss.Model, np.ndarray]:
 
 
 def bar(count: int) -> tuple[ss.Model, np.ndarray]:
-    """Return a clamped steel bar on so many contacts, at its free end, about its first resonance."""
+    """Return a clamped steel bar on contacts at its free end, about its first resonance."""
     young, density, area, length = 2.1e11, 7800.0, 1e-4, 1.0
     step = length / ELEMENTS
     stiff = 2.0 * np.eye(ELEMENTS) - np.eye(ELEMENTS, k=1) - np.eye(ELEMENTS, k=-1)
@@ -74,27 +74,28 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("cases", nargs="*", default=list(CASES))
     for name in parser.parse_args().cases:
-        model, omega = CASES[name]()
-        orbits = ss.exact_response(model, omega)
-        balance = ss.forced_response(model, omega, HARMONICS, stability=False)
-        times = np.array(
-            [
-                [
-                    spent(lambda: ss.exact_response(model, omega)),
-                    spent(
-                        lambda: ss.forced_response(model, omega, HARMONICS, stability=False)
-                    ),
-                ]
-                for _ in range(RUNS)
-            ]
-        )
-        exact, by_balance = np.median(times, axis=0) / omega.size
-        print(
-            f"{name:>5}: orbit {1e3 * exact:8.3f} ms, balance {1e3 * by_balance:7.3f} ms, "
-            f"{np.median(times[:, 0] / times[:, 1]):5.1f} times"
-        )
-        print(f"       {orbits.converged.sum()} and {balance.converged.sum()} of {omega.size} converged")
-        print(f"       {orbits.counters}")
+        report(name)
+
+
+def report(name: str) -> None:
+    """Time a case by both methods in turn."""
+    model, omega = CASES[name]()
+
+    def orbits() -> ss.ExactResponse:
+        return ss.exact_response(model, omega)
+
+    def balance() -> ss.ForcedResponse:
+        return ss.forced_response(model, omega, HARMONICS, stability=False)
+
+    found, of_balance = orbits(), balance()
+    times = np.array([[spent(orbits), spent(balance)] for _ in range(RUNS)])
+    exact, by_balance = 1e3 * np.median(times, axis=0) / omega.size
+    ratio = np.median(times[:, 0] / times[:, 1])
+    print(f"{name:>5}: orbit {exact:8.3f} ms, balance {by_balance:7.3f} ms, {ratio:5.1f} times;")
+    solved = [int(one.converged.sum()) for one in (found, of_balance)]
+    steps, matrices = (found.counters[key] for key in ("evaluations", "factorisations"))
+    print(f"       {solved[0]} and {solved[1]} of {omega.size} points;", end=" ")
+    print(f"{steps / omega.size:.0f} steps and {matrices / omega.size:.1f} matrices each")
 
 
 if __name__ == "__main__":
