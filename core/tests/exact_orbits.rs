@@ -211,7 +211,7 @@ fn an_orbit_takes_few_passes() {
     let mut state = State::from_dofs(&modal, &found.points[0].state).unwrap();
     flow.run(&mut state, 0.5 * TAU / omega, &mut |_| {}).unwrap();
     let passes = found.profile.evaluations as f64 / flow.steps as f64;
-    assert!(passes < 5.0, "{passes}");
+    assert!(passes < 5.5, "{passes}");
 }
 
 #[test]

@@ -99,17 +99,22 @@ impl pulp::NullaryFnOnce for Widen<'_> {
 /// `Σ a b` and `Σ |a| c`, some terms side by side.
 #[inline(always)]
 fn sums(a: &[f64], [b, c]: [&Vec<f64>; 2]) -> [f64; 2] {
-    let mut sums = [[0.0; LANES]; 2];
-    let blocks = a.chunks_exact(LANES).zip(b.chunks_exact(LANES)).zip(c.chunks_exact(LANES));
-    for ((a, b), c) in blocks {
-        for i in 0..LANES {
-            sums[0][i] += a[i] * b[i];
-            sums[1][i] += a[i].abs() * c[i];
-        }
+    let (mut products, mut sizes) = ([0.0; LANES], [0.0; LANES]);
+    let [of_a, of_b, of_c] = [a, b.as_slice(), c.as_slice()].map(|all| all.chunks_exact(LANES));
+    let rest = [&of_a, &of_b, &of_c].map(|all| all.remainder());
+    for ((a, b), c) in of_a.zip(of_b).zip(of_c) {
+        add([a, b, c], &mut products, &mut sizes);
     }
-    for i in a.len() / LANES * LANES..a.len() {
-        sums[0][0] += a[i] * b[i];
-        sums[1][0] += a[i].abs() * c[i];
+    add(rest, &mut products, &mut sizes);
+    [products.iter().sum(), sizes.iter().sum()]
+}
+
+/// Adds products, and those of sizes, to sums.
+#[inline(always)]
+fn add([a, b, c]: [&[f64]; 3], products: &mut [f64; LANES], sizes: &mut [f64; LANES]) {
+    let to = products.iter_mut().zip(sizes);
+    for ((product, size), ((a, b), c)) in to.zip(a.iter().zip(b).zip(c)) {
+        *product += a * b;
+        *size += a.abs() * c;
     }
-    sums.map(|all| all.iter().sum())
 }

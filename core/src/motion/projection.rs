@@ -94,12 +94,12 @@ fn sums<const HALF: usize, const N: usize>(
         for (j, x) in vectors.clone() {
             let column = &block[2 * HALF * j..2 * HALF * (j + 1)];
             let (first, last) = column.split_at(HALF);
-            for n in 0..N {
-                for (sum, b) in upper[n].iter_mut().zip(first) {
-                    *sum += b * x[n];
+            for ((upper, lower), x) in upper.iter_mut().zip(&mut lower).zip(x) {
+                for (sum, b) in upper.iter_mut().zip(first) {
+                    *sum += b * x;
                 }
-                for (sum, b) in lower[n].iter_mut().zip(last) {
-                    *sum += b * x[n];
+                for (sum, b) in lower.iter_mut().zip(last) {
+                    *sum += b * x;
                 }
             }
         }
