@@ -6,12 +6,13 @@ mod common;
 
 use common::passive::{passive_system, unsymmetric_system};
 use common::{beam_pair, runge_kutta, single_dof, snecma_beam, System};
-use faer::c64;
+use faer::{c64, Mat};
 use proptest::prelude::*;
+use std::f64::consts::TAU;
 use stickslip_core::balance::PointStatus;
 use stickslip_core::contact::{PointState, Residual};
 use stickslip_core::model::Model;
-use stickslip_core::motion::{transient, Scheme, TransientSettings};
+use stickslip_core::motion::{transient, Flow, ModalSystem, Scheme, State, TransientSettings};
 use stickslip_core::orbit::{orbit_sweep, Orbit, OrbitSettings, PeriodicOrbits};
 
 fn orbit_of(model: &Model, omega: f64, residual: Residual) -> Orbit {
@@ -142,6 +143,75 @@ fn multipliers_match_differences_of_the_flow() {
         let error = multiplier_error(&system, omega);
         assert!(error < 1e-6, "{omega}: {error:e}");
     }
+}
+
+/// A chain that is held at one end and pulled at the other, with a damper of another limit on each mass.
+fn chain(count: usize) -> System {
+    let stiff = |i: usize, j: usize| match i.abs_diff(j) {
+        0 if i + 1 == count => 400.0,
+        0 => 800.0,
+        1 => -400.0,
+        _ => 0.0,
+    };
+    let stiffness = Mat::from_fn(count, count, stiff);
+    let mass = Mat::<f64>::identity(count, count);
+    System {
+        damping: faer::Scale(0.05) * &mass + faer::Scale(1e-3) * &stiffness,
+        mass,
+        stiffness,
+        dampers: (0..count).map(|i| (i, None, 60.0, 0.2 + 0.05 * i as f64)).collect(),
+        forces: vec![(count - 1, 1, 30.0, 0.0)],
+    }
+}
+
+#[test]
+fn multipliers_of_many_contacts_match_differences_of_the_flow() {
+    let (system, omega) = (chain(12), 3.1);
+    let contacts = orbit(&system, omega).response.contacts;
+    assert!(contacts.iter().filter(|one| one.slip_fraction > 0.0).count() > 6);
+    let error = multiplier_error(&system, omega);
+    assert!(error < 1e-6, "{error:e}");
+}
+
+#[test]
+fn ranges_are_those_of_samples() {
+    let (system, omega) = (chain(12), 3.1);
+    let orbit = orbit(&system, omega);
+    let samples = 4000;
+    let settings = TransientSettings {
+        omega,
+        scheme: Scheme::Exact,
+        periods: 1,
+        tolerance: None,
+        samples,
+        keep: None,
+    };
+    let observe: Vec<usize> = (0..system.dofs()).collect();
+    let model = system.model();
+    let run = transient(&model, &settings, Some(&orbit.state), &observe, &|_| true).unwrap();
+    for dof in observe {
+        let values = run.trace.displacement.iter().skip(dof).step_by(system.dofs());
+        let highest = values.fold(f64::NEG_INFINITY, |most, x| most.max(*x));
+        let found = orbit.range[dof][1];
+        // Between two samples a motion of a few harmonics rises by about the square of their distance.
+        let missed = 20.0 * (TAU / samples as f64).powi(2);
+        assert!((-1e-12..missed).contains(&(found / highest - 1.0)), "{dof}: {found} {highest}");
+    }
+}
+
+/// The pass that reads an orbit is the one that looks at the last step of Newton's method.
+#[test]
+fn an_orbit_takes_few_passes() {
+    let (system, omega) = (chain(12), 3.1);
+    let model = system.model();
+    let orbits = PeriodicOrbits::new(&model, OrbitSettings::default(), &[0]).unwrap();
+    let found = orbit_sweep(orbits, &[omega]).unwrap();
+    let modal = ModalSystem::new(&model).unwrap();
+    let mut flow = Flow::new(&modal, omega);
+    let mut state = State::from_dofs(&modal, &found.points[0].state).unwrap();
+    flow.run(&mut state, 0.5 * TAU / omega, &mut |_| {}).unwrap();
+    let passes = found.profile.evaluations as f64 / flow.steps as f64;
+    assert!(passes < 5.5, "{passes}");
 }
 
 #[test]

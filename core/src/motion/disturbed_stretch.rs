@@ -17,16 +17,16 @@ impl Transition<'_> {
         known: &mut Propagators,
     ) {
         let first = 2 * self.weight.len();
-        let mut disturbed = vec![false; total.nrows()];
+        let mut disturbed = vec![false; total.nrows() - first];
         let mut columns = Vec::with_capacity(total.ncols());
         for j in 0..total.ncols() {
             let column = total.col_as_slice(j);
-            disturbed.iter_mut().zip(column).for_each(|(row, x)| *row |= *x != 0.0);
+            disturbed.iter_mut().zip(&column[first..]).for_each(|(row, x)| *row |= *x != 0.0);
             if column.iter().any(|x| *x != 0.0) {
                 columns.push(j);
             }
         }
-        let own = self.equations(regime, &disturbed[first..]);
+        let own = self.equations(regime, &disturbed);
         let factors: Vec<f64> = own.scale.iter().zip(&self.weight).map(|(s, w)| s / w).collect();
         let mut states = Mat::zeros(first, columns.len());
         let mut inputs = Mat::zeros(own.strains.len(), columns.len());

@@ -1,5 +1,8 @@
 //! The coefficients of a power series, each from the ones before: of a motion about a state, and of a small
 //! disturbance of it.
+//!
+//! Forces act on coefficients two powers up: two powers at a time follow from the ones before, and the modes
+//! at the contacts are gone through but once for both.
 
 use super::branch_series::{BranchSeries, Pass};
 use super::damping::Damping;
@@ -9,10 +12,13 @@ use super::polynomial::DEGREE;
 use super::power_series::{sum_of_products, PowerSeries, LONGEST_MICROSLIP};
 use super::sliding::{Slide, Swing};
 use super::state::State;
+use pulp::NullaryFnOnce as _;
 
 /// Shortest step where contacts slip little by little, and passes over a step.
 const SHORTEST: f64 = 1e-9;
 const PASSES: usize = 24;
+/// Modes that are not worth a choice of vector instructions.
+const FEW: usize = 8;
 
 impl PowerSeries {
     pub(super) fn set_rate(&mut self, system: &ModalSystem, rate: f64) {
@@ -101,22 +107,28 @@ impl PowerSeries {
             })
             .collect();
         self.connect(system, regime);
-        for power in 0..=DEGREE {
-            self.expand_contacts(system, power);
-            for branch in self.branches.iter().filter(|_| power > 0) {
-                let at = branch.point * (DEGREE + 1) + power;
-                self.force[at] = branch.force(power, &self.contact);
+        for first in (0..=DEGREE).step_by(2) {
+            self.displace_contacts(system, first);
+            for power in first..DEGREE.min(first + 1) + 1 {
+                self.load_contacts(power);
+                for branch in self.branches.iter().filter(|_| power > 0) {
+                    let at = branch.point * (DEGREE + 1) + power;
+                    self.force[at] = branch.force(power, &self.contact);
+                }
+                let mut slides = std::mem::take(&mut self.slides);
+                for slide in &mut slides {
+                    let traction = slide.advance(power, &self.contact);
+                    self.set_forces(slide.plane.points, power, traction);
+                }
+                self.slides = slides;
             }
-            let mut slides = std::mem::take(&mut self.slides);
-            for slide in &mut slides {
-                let traction = slide.advance(power, &self.contact);
-                self.set_forces(slide.plane.points, power, traction);
-            }
-            self.slides = slides;
-            self.expand_modes(system, &loads, power);
-            for (frequency, [re, im]) in &mut loads {
-                let step = *frequency / (power + 1) as f64;
-                (*re, *im) = (-step * *im, step * *re);
+            self.load_modes(system, first);
+            for power in [first, first + 1] {
+                self.expand_modes(system, &loads, power);
+                for (frequency, [re, im]) in &mut loads {
+                    let step = *frequency / (power + 1) as f64;
+                    (*re, *im) = (-step * *im, step * *re);
+                }
             }
         }
     }
@@ -143,17 +155,22 @@ impl PowerSeries {
         let mut swings: Vec<Swing<'_>> =
             motion.slides.iter().map(|slide| Swing::new(slide, force, moved)).collect();
         self.connect(system, regime);
-        for power in 0..=DEGREE {
-            self.expand_contacts(system, power);
-            for (branch, begun) in motion.branches.iter().zip(begun) {
-                let at = branch.point * (DEGREE + 1) + power;
-                self.force[at] = branch.disturbed(power, &self.contact, *begun);
+        for first in (0..=DEGREE).step_by(2) {
+            self.displace_contacts(system, first);
+            for power in first..DEGREE.min(first + 1) + 1 {
+                self.load_contacts(power);
+                for (branch, begun) in motion.branches.iter().zip(begun) {
+                    let at = branch.point * (DEGREE + 1) + power;
+                    self.force[at] = branch.disturbed(power, &self.contact, *begun);
+                }
+                for swing in &mut swings {
+                    let traction = swing.advance(power, &self.contact);
+                    self.set_forces(swing.points(), power, traction);
+                }
             }
-            for swing in &mut swings {
-                let traction = swing.advance(power, &self.contact);
-                self.set_forces(swing.points(), power, traction);
-            }
-            self.expand_modes(system, &[], power);
+            self.load_modes(system, first);
+            self.expand_modes(system, &[], first);
+            self.expand_modes(system, &[], first + 1);
         }
     }
 
@@ -175,6 +192,21 @@ impl PowerSeries {
         }
     }
 
+    /// Modal forces at two powers.
+    fn load_modes(&mut self, system: &ModalSystem, first: usize) {
+        if first + 2 > DEGREE {
+            return;
+        }
+        self.acting.clear();
+        for (point, force) in self.force.chunks_exact(DEGREE + 1).enumerate() {
+            let both = [force[first], force[first + 1]];
+            if both != [0.0; 2] {
+                self.acting.push((point, both));
+            }
+        }
+        system.projection.modal_forces(&self.acting, &mut self.modal_force);
+    }
+
     /// Coefficients of η two powers up.
     fn expand_modes(&mut self, system: &ModalSystem, loads: &[(f64, [f64; 2])], power: usize) {
         let (n, rate) = (self.modes, self.rate);
@@ -184,13 +216,6 @@ impl PowerSeries {
         let (known, rest) = self.modal.split_at_mut((power + 2) * n);
         let next = &mut rest[..n];
         let (here, ahead) = (&known[power * n..(power + 1) * n], &known[(power + 1) * n..]);
-        self.acting.clear();
-        for (point, force) in self.force.chunks_exact(DEGREE + 1).enumerate() {
-            if force[power] != 0.0 {
-                self.acting.push((point, force[power]));
-            }
-        }
-        system.projection.modal_forces(&self.acting, &mut self.modal_force);
         let (order, square) = ((power + 1) as f64, rate * rate);
         let share = 1.0 / (order * (order + 1.0));
         next.fill(0.0);
@@ -199,7 +224,8 @@ impl PowerSeries {
                 *next += p.re * re - p.im * im;
             }
         }
-        next.iter_mut().zip(&self.modal_force).for_each(|(next, force)| *next -= force);
+        let forces = &self.modal_force[power % 2];
+        next.iter_mut().zip(forces).for_each(|(next, force)| *next -= force);
         if let Damping::Full(damping) = &system.damping {
             for (j, v) in ahead.iter().enumerate() {
                 for (i, next) in next.iter_mut().enumerate() {
@@ -211,10 +237,18 @@ impl PowerSeries {
             }
             return;
         }
-        let own = self.stiffness.iter().zip(&self.damping);
-        for ((next, (x, v)), (w, c)) in next.iter_mut().zip(here.iter().zip(ahead)).zip(own) {
-            *next = share * (*next / square - w * x - order * c * v);
+        let own = Recurrence {
+            next,
+            here,
+            ahead,
+            stiffness: &self.stiffness,
+            damping: &self.damping,
+            factors: [share, square, order],
+        };
+        if n < FEW {
+            return own.call();
         }
+        pulp::Arch::new().dispatch(own);
     }
 
     /// Finds out which forces follow which displacements; all others stay as they are.
@@ -232,19 +266,52 @@ impl PowerSeries {
         }
     }
 
-    /// Coefficients of u and f at one power.
-    fn expand_contacts(&mut self, system: &ModalSystem, power: usize) {
-        let modal = &self.modal[power * self.modes..(power + 1) * self.modes];
-        system.projection.displacements(modal, &mut self.displaced);
-        for point in (0..system.points()).filter(|point| system.is_felt(*point)) {
-            self.contact[point * (DEGREE + 1) + power] = self.displaced[point];
+    /// Coefficients of u at two powers.
+    fn displace_contacts(&mut self, system: &ModalSystem, first: usize) {
+        let last = DEGREE.min(first + 1);
+        let own = |power: usize| &self.modal[power * self.modes..(power + 1) * self.modes];
+        system.projection.displacements([own(first), own(last)], &mut self.displaced);
+        let points = self.contact.chunks_exact_mut(DEGREE + 1).enumerate();
+        for (point, series) in points.filter(|(point, _)| system.is_felt(*point)) {
+            for (power, displaced) in [first, last].into_iter().zip(&self.displaced) {
+                series[power] = displaced[point];
+            }
         }
+    }
+
+    /// Coefficients of the forces that follow displacements, at one power.
+    fn load_contacts(&mut self, power: usize) {
         if power == 0 {
             return;
         }
         for own in self.springs.chunk_by(|one, next| one.0 == next.0) {
             let parts = own.iter().map(|(_, j, k)| (*k, self.contact[j * (DEGREE + 1) + power]));
             self.force[own[0].0 * (DEGREE + 1) + power] = sum_of_products(parts);
+        }
+    }
+}
+
+/// The next coefficients of modes that are damped by themselves, from their loads. A closure would be no part
+/// of what vector instructions are chosen for.
+struct Recurrence<'a> {
+    next: &'a mut [f64],
+    here: &'a [f64],
+    ahead: &'a [f64],
+    stiffness: &'a [f64],
+    damping: &'a [f64],
+    factors: [f64; 3],
+}
+
+impl pulp::NullaryFnOnce for Recurrence<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let [share, square, order] = self.factors;
+        let own = self.stiffness.iter().zip(self.damping);
+        let known = self.here.iter().zip(self.ahead);
+        for ((next, (x, v)), (w, c)) in self.next.iter_mut().zip(known).zip(own) {
+            *next = share * (*next / square - w * x - order * c * v);
         }
     }
 }

@@ -6,6 +6,7 @@ use super::flow_next::rescale;
 use super::history::{History, Trace, TransientSettings};
 use super::microslip::Turn;
 use super::modal_system::{dot, ModalSystem};
+use super::modal_way::ModalWay;
 use super::polynomial::{sign_changes, value};
 use super::runge_kutta::RungeKutta;
 use super::state::State;
@@ -195,6 +196,9 @@ pub(crate) struct Extremes {
     series: Vec<f64>,
     slope: Vec<f64>,
     zeros: Vec<f64>,
+    /// What the modes do on a stretch, and shapes that may have an extreme there.
+    way: ModalWay,
+    open: Vec<usize>,
 }
 
 impl Extremes {
@@ -205,10 +209,15 @@ impl Extremes {
         shapes: &[Vec<f64>],
         ranges: &mut [[f64; 2]],
     ) {
-        for (shape, range) in shapes.iter().zip(ranges) {
-            segment.series.project(shape.iter().copied(), segment.length, &mut self.series);
-            self.widen(range);
+        segment.series.write_way(segment.length, &mut self.way);
+        let mut open = std::mem::take(&mut self.open);
+        self.way.widen(shapes, ranges, &mut open);
+        for &number in &open {
+            let shape = shapes[number].iter().copied();
+            segment.series.project(shape, segment.length, &mut self.series);
+            self.widen(&mut ranges[number]);
         }
+        self.open = open;
     }
 
     /// Widens the range of each contact displacement.

@@ -10,7 +10,8 @@ use super::modal_system::{dot, ModalSystem};
 use super::polynomial::{self, DEGREE, TRUNCATION};
 use super::sliding::Slide;
 use crate::contact::{Bound, SlipPlane};
-use faer::{Mat, MatRef};
+use faer::linalg::matmul::matmul;
+use faer::{Accum, Mat, MatRef, Par};
 
 /// Longest step in units of the fastest rate: beyond it rounding errors of fast modes would grow.
 const LONGEST: f64 = 12.0;
@@ -47,22 +48,33 @@ pub struct PowerSeries {
     /// … the length of τ over which their forces hold, and the first ones to try: behind a reversal, and else.
     pub(super) window: f64,
     pub(super) tried: [f64; 2],
-    /// Displacements of one power; and which forces follow which displacements, with which factors, force
-    /// after force.
-    pub(super) displaced: Vec<f64>,
-    /// Points whose forces have a coefficient of one power, and what these are for the modes.
-    pub(super) acting: Vec<(usize, f64)>,
-    pub(super) modal_force: Vec<f64>,
+    /// Displacements of two powers.
+    pub(super) displaced: [Vec<f64>; 2],
+    /// Points whose forces have coefficients of these, and what they are for the modes.
+    pub(super) acting: Vec<(usize, [f64; 2])>,
+    pub(super) modal_force: [Vec<f64>; 2],
+    /// Which forces follow which displacements, with which factors, force after force.
     pub(super) springs: Vec<(usize, usize, f64)>,
 }
 
 /// A motion at many instants, one column each: modal displacements and velocities, contact velocities and
-/// contact forces.
+/// contact forces. Stretch after stretch takes the same room.
+#[derive(Debug)]
 pub(crate) struct Values {
+    /// Powers of the instants, and their derivatives.
+    powers: Mat<f64>,
+    slopes: Mat<f64>,
     pub(crate) displacement: Mat<f64>,
     pub(crate) velocity: Mat<f64>,
     pub(crate) speed: Mat<f64>,
     pub(crate) force: Mat<f64>,
+}
+
+impl Default for Values {
+    fn default() -> Self {
+        let [powers, slopes, displacement, velocity, speed, force] = [(); 6].map(|()| Mat::new());
+        Self { powers, slopes, displacement, velocity, speed, force }
+    }
 }
 
 impl PowerSeries {
@@ -82,9 +94,9 @@ impl PowerSeries {
             branches: Vec::new(),
             window: LONGEST,
             tried: [FRESH, LONGEST_MICROSLIP],
-            displaced: Vec::new(),
+            displaced: [Vec::new(), Vec::new()],
             acting: Vec::new(),
-            modal_force: Vec::new(),
+            modal_force: [Vec::new(), Vec::new()],
             springs: Vec::new(),
         };
         series.set_rate(system, rate);
@@ -189,27 +201,43 @@ impl PowerSeries {
         velocity.iter_mut().for_each(|v| *v *= self.rate);
     }
 
-    /// The motion at many instants τ.
-    pub(crate) fn values(&self, instants: impl ExactSizeIterator<Item = f64>) -> Values {
-        let mut powers = Mat::<f64>::zeros(DEGREE + 1, instants.len());
-        let mut slopes = Mat::<f64>::zeros(DEGREE + 1, instants.len());
+    /// Writes the motion at many instants τ.
+    pub(crate) fn write_values(
+        &self,
+        instants: impl ExactSizeIterator<Item = f64>,
+        values: &mut Values,
+    ) {
+        let (count, points) = (instants.len(), self.force.len() / (DEGREE + 1));
+        let Values { powers, slopes, displacement, velocity, speed, force } = values;
+        for (matrix, rows) in [
+            (powers, DEGREE + 1),
+            (slopes, DEGREE + 1),
+            (displacement, self.modes),
+            (velocity, self.modes),
+            (speed, points),
+            (force, points),
+        ] {
+            matrix.resize_with(rows, count, |_, _| 0.0);
+        }
+        let Values { powers, slopes, displacement, velocity, speed, force } = values;
         for (j, tau) in instants.enumerate() {
             let (power, slope) = (powers.col_as_slice_mut(j), slopes.col_as_slice_mut(j));
-            power[0] = 1.0;
+            (power[0], slope[0]) = (1.0, 0.0);
             for n in 1..=DEGREE {
                 power[n] = tau * power[n - 1];
                 slope[n] = self.rate * n as f64 * power[n - 1];
             }
         }
-        let points = self.force.len() / (DEGREE + 1);
         let modal = MatRef::from_column_major_slice(&self.modal, self.modes, DEGREE + 1);
-        let [contact, force] = [&self.contact, &self.force]
+        let [contacts, forces] = [&self.contact, &self.force]
             .map(|all| MatRef::from_column_major_slice(all, DEGREE + 1, points).transpose());
-        Values {
-            displacement: modal * &powers,
-            velocity: modal * &slopes,
-            speed: contact * &slopes,
-            force: force * &powers,
+        for (to, coefficients, by) in [
+            (displacement, modal, &*powers),
+            (velocity, modal, &*slopes),
+            (speed, contacts, slopes),
+            (force, forces, powers),
+        ] {
+            matmul(to.as_mut(), Accum::Replace, coefficients, by.as_ref(), 1.0, Par::Seq);
         }
     }
 

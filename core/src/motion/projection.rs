@@ -1,7 +1,7 @@
 //! Modes seen at the contacts: `u = B Φ η`, and `(B Φ)ᵀ f` back.
 
 /// Numbers that are summed side by side, in registers: many, and what is left over.
-const WIDE: usize = 32;
+const WIDE: usize = 16;
 const NARROW: usize = 8;
 /// Numbers of a matrix that is not worth vector instructions.
 const SMALL: usize = 64;
@@ -41,43 +41,72 @@ impl Blocks {
         Self { columns, plain, wide: blocks(0, whole, WIDE), narrow: blocks(whole, rows, lanes) }
     }
 
-    /// The product with a vector of which these columns alone are not 0, in whole blocks.
-    fn product(&self, vector: impl Iterator<Item = (usize, f64)> + Clone, out: &mut Vec<f64>) {
-        out.clear();
+    /// The products with vectors of which these columns alone are not 0, in whole blocks.
+    fn products<const N: usize>(
+        &self,
+        vectors: impl Iterator<Item = (usize, [f64; N])> + Clone,
+        out: &mut [Vec<f64>; N],
+    ) {
+        out.iter_mut().for_each(Vec::clear);
         if self.plain {
-            let rows = self.narrow.chunks_exact(self.columns.max(1));
-            out.extend(rows.map(|row| vector.clone().map(|(j, x)| row[j] * x).sum::<f64>()));
+            for row in self.narrow.chunks_exact(self.columns.max(1)) {
+                for (n, out) in out.iter_mut().enumerate() {
+                    out.push(vectors.clone().map(|(j, x)| row[j] * x[n]).sum::<f64>());
+                }
+            }
             return;
         }
-        pulp::Arch::new().dispatch(|| {
-            sums::<{ WIDE / 2 }>(&self.wide, self.columns, vector.clone(), out);
-            sums::<{ NARROW / 2 }>(&self.narrow, self.columns, vector, out);
-        });
+        pulp::Arch::new().dispatch(Products { blocks: self, vectors, out });
+    }
+}
+
+/// Products of all blocks; a closure would be no part of what vector instructions are chosen for.
+struct Products<'a, V, const N: usize> {
+    blocks: &'a Blocks,
+    vectors: V,
+    out: &'a mut [Vec<f64>; N],
+}
+
+impl<V, const N: usize> pulp::NullaryFnOnce for Products<'_, V, N>
+where
+    V: Iterator<Item = (usize, [f64; N])> + Clone,
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Blocks { columns, wide, narrow, .. } = self.blocks;
+        sums::<{ WIDE / 2 }, N>(wide, *columns, self.vectors.clone(), self.out);
+        sums::<{ NARROW / 2 }, N>(narrow, *columns, self.vectors, self.out);
     }
 }
 
 /// Products of blocks of twice so many rows.
 #[inline(always)]
-fn sums<const HALF: usize>(
+fn sums<const HALF: usize, const N: usize>(
     blocks: &[f64],
     columns: usize,
-    vector: impl Iterator<Item = (usize, f64)> + Clone,
-    out: &mut Vec<f64>,
+    vectors: impl Iterator<Item = (usize, [f64; N])> + Clone,
+    out: &mut [Vec<f64>; N],
 ) {
     for block in blocks.chunks_exact((2 * HALF * columns).max(1)) {
-        let (mut upper, mut lower) = ([0.0; HALF], [0.0; HALF]);
-        for (j, x) in vector.clone() {
+        let (mut upper, mut lower) = ([[0.0; HALF]; N], [[0.0; HALF]; N]);
+        for (j, x) in vectors.clone() {
             let column = &block[2 * HALF * j..2 * HALF * (j + 1)];
             let (first, last) = column.split_at(HALF);
-            for (sum, b) in upper.iter_mut().zip(first) {
-                *sum += b * x;
-            }
-            for (sum, b) in lower.iter_mut().zip(last) {
-                *sum += b * x;
+            for ((upper, lower), x) in upper.iter_mut().zip(&mut lower).zip(x) {
+                for (sum, b) in upper.iter_mut().zip(first) {
+                    *sum += b * x;
+                }
+                for (sum, b) in lower.iter_mut().zip(last) {
+                    *sum += b * x;
+                }
             }
         }
-        out.extend_from_slice(&upper);
-        out.extend_from_slice(&lower);
+        for (out, (upper, lower)) in out.iter_mut().zip(upper.iter().zip(&lower)) {
+            out.extend_from_slice(upper);
+            out.extend_from_slice(lower);
+        }
     }
 }
 
@@ -91,14 +120,16 @@ impl Projection {
         }
     }
 
-    /// Displacements of all points, in whole blocks; each is the sum over the modes in their order.
-    pub(super) fn displacements(&self, modal: &[f64], out: &mut Vec<f64>) {
-        self.to_points.product(modal.iter().copied().enumerate(), out);
+    /// Displacements of all points in two motions, in whole blocks; each is the sum over the modes in their
+    /// order.
+    pub(super) fn displacements(&self, [one, other]: [&[f64]; 2], out: &mut [Vec<f64>; 2]) {
+        let both = one.iter().zip(other).map(|(a, b)| [*a, *b]).enumerate();
+        self.to_points.products(both, out);
     }
 
-    /// Modal forces of forces at some points, in whole blocks.
-    pub(super) fn modal_forces(&self, forces: &[(usize, f64)], out: &mut Vec<f64>) {
-        self.to_modes.product(forces.iter().copied(), out);
+    /// Modal forces of two sets of forces at some points, in whole blocks.
+    pub(super) fn modal_forces(&self, forces: &[(usize, [f64; 2])], out: &mut [Vec<f64>; 2]) {
+        self.to_modes.products(forces.iter().copied(), out);
     }
 }
 
@@ -111,19 +142,25 @@ mod tests {
         for (points, modes) in [(1, 1), (3, 5), (16, 2), (37, 71)] {
             let rows: Vec<f64> = (0..points * modes).map(|i| (i as f64).sin()).collect();
             let projection = Projection::new(&rows, modes);
-            let modal: Vec<f64> = (0..modes).map(|i| (i as f64).cos()).collect();
-            let mut found = Vec::new();
-            projection.displacements(&modal, &mut found);
-            for (row, found) in rows.chunks_exact(modes).zip(&found) {
-                let expected: f64 = row.iter().zip(&modal).map(|(b, x)| b * x).sum();
-                assert_eq!(*found, expected);
+            let modal = |way: f64| (0..modes).map(|i| (way * i as f64).cos()).collect::<Vec<_>>();
+            let both = [modal(1.0), modal(0.3)];
+            let mut found = [Vec::new(), Vec::new()];
+            projection.displacements([&both[0], &both[1]], &mut found);
+            for (modal, found) in both.iter().zip(&found) {
+                for (row, found) in rows.chunks_exact(modes).zip(found) {
+                    let expected: f64 = row.iter().zip(modal).map(|(b, x)| b * x).sum();
+                    assert_eq!(*found, expected);
+                }
             }
-            let forces: Vec<(usize, f64)> =
-                (0..points).step_by(2).map(|i| (i, (i as f64).cos())).collect();
+            let forces: Vec<(usize, [f64; 2])> =
+                (0..points).step_by(2).map(|i| (i, [(i as f64).cos(), 0.5])).collect();
             projection.modal_forces(&forces, &mut found);
-            for (mode, found) in found.iter().enumerate().take(modes) {
-                let expected: f64 = forces.iter().map(|(i, f)| rows[i * modes + mode] * f).sum();
-                assert_eq!(*found, expected);
+            for (n, found) in found.iter().enumerate() {
+                for (mode, found) in found.iter().enumerate().take(modes) {
+                    let expected: f64 =
+                        forces.iter().map(|(i, f)| rows[i * modes + mode] * f[n]).sum();
+                    assert_eq!(*found, expected);
+                }
             }
         }
     }

@@ -17,6 +17,10 @@ const ROOM: usize = 1 << 23;
 const CLOSE: f64 = 1.0;
 /// Term of such a series, relative to the states, that is none.
 const ROUNDING: f64 = 1e-18;
+/// Columns that such a series takes at a time.
+const COLUMNS: usize = 48;
+/// Numbers that are summed side by side.
+const LANES: usize = 8;
 
 /// The exponential over a stretch.
 #[derive(Debug)]
@@ -59,51 +63,62 @@ impl Equations {
 
     /// Derivatives of states, one column each, times a duration.
     fn rates_of(&self, states: &Mat<f64>, duration: f64) -> Mat<f64> {
-        let modes = self.scale.len();
         let mut out = Mat::<f64>::zeros(states.nrows(), states.ncols());
-        let mut lower = out.get_mut(modes.., ..);
-        let (displacement, velocity) = states.split_at_row(modes);
-        let minus = -duration;
-        matmul(
-            lower.as_mut(),
-            Accum::Replace,
-            self.stiffness.as_ref(),
-            displacement,
-            minus,
-            Par::Seq,
-        );
+        self.write_forces(states, duration, &mut out);
+        for j in 0..states.ncols() {
+            self.complete(states.col_as_slice(j), duration, out.col_as_slice_mut(j));
+        }
+        out
+    }
+
+    /// Accelerations by the stiffness, and by a damping that couples modes, times a duration.
+    fn write_forces(&self, states: &Mat<f64>, duration: f64, out: &mut Mat<f64>) {
+        let (displacement, velocity) = states.split_at_row(self.scale.len());
+        let mut lower = out.get_mut(self.scale.len().., ..);
+        let (own, minus) = (self.stiffness.as_ref(), -duration);
+        matmul(lower.as_mut(), Accum::Replace, own, displacement, minus, Par::Seq);
         if let Damping::Full(damping) = &self.damping {
             matmul(lower.as_mut(), Accum::Add, damping.as_ref(), velocity, minus, Par::Seq);
         }
-        for j in 0..states.ncols() {
-            let velocity = &states.col_as_slice(j)[modes..];
-            let (upper, lower) = out.col_as_slice_mut(j).split_at_mut(modes);
-            for ((upper, s), v) in upper.iter_mut().zip(&self.scale).zip(velocity) {
-                *upper = duration * s * v;
-            }
-            if let Damping::Diagonal(damping) = &self.damping {
-                for ((lower, c), v) in lower.iter_mut().zip(damping).zip(velocity) {
-                    *lower -= duration * c * v;
-                }
+    }
+
+    /// Velocities, and accelerations by a damping of single modes, times a duration.
+    #[inline(always)]
+    fn complete(&self, state: &[f64], duration: f64, out: &mut [f64]) {
+        let modes = self.scale.len();
+        let ((upper, lower), velocity) = (out.split_at_mut(modes), &state[modes..]);
+        for ((upper, s), v) in upper.iter_mut().zip(&self.scale).zip(velocity) {
+            *upper = duration * s * v;
+        }
+        if let Damping::Diagonal(damping) = &self.damping {
+            for ((lower, c), v) in lower.iter_mut().zip(damping).zip(velocity) {
+                *lower -= duration * c * v;
             }
         }
-        out
     }
 
     /// `[M, N]` times a duration.
     fn matrix(&self, duration: f64) -> Driven {
         let modes = self.scale.len();
-        Driven::new(Mat::from_fn(2 * modes, 2 * modes + self.strains.len(), |i, j| {
-            duration
-                * match (i.checked_sub(modes), j.checked_sub(modes)) {
-                    (None, None) => 0.0,
-                    (None, Some(k)) if k == i => self.scale[i],
-                    (None, Some(_)) => 0.0,
-                    (Some(i), None) => -self.stiffness[(i, j)],
-                    (Some(i), Some(k)) if k < modes => -self.damping.entry(i, k),
-                    (Some(i), Some(k)) => self.input[(i, k - modes)],
+        let mut rows = Mat::<f64>::zeros(2 * modes, 2 * modes + self.strains.len());
+        for (j, s) in self.scale.iter().enumerate() {
+            let lower = rows.col_as_slice_mut(j)[modes..].iter_mut();
+            lower.zip(self.stiffness.col_as_slice(j)).for_each(|(to, k)| *to = -duration * k);
+            let own = rows.col_as_slice_mut(modes + j);
+            own[j] = duration * s;
+            match &self.damping {
+                Damping::Diagonal(damping) => own[modes + j] = -duration * damping[j],
+                Damping::Full(damping) => {
+                    let lower = own[modes..].iter_mut().zip(damping.col_as_slice(j));
+                    lower.for_each(|(to, c)| *to = -duration * c);
                 }
-        }))
+            }
+        }
+        for strain in 0..self.strains.len() {
+            let lower = rows.col_as_slice_mut(2 * modes + strain)[modes..].iter_mut();
+            lower.zip(self.input.col_as_slice(strain)).for_each(|(to, g)| *to = duration * g);
+        }
+        Driven::new(rows)
     }
 
     fn exponential(&self, duration: f64) -> Driven {
@@ -112,27 +127,95 @@ impl Equations {
         })
     }
 
-    /// Takes states a little further, or back, by a power series.
+    /// Takes states a little further, or back, by a power series: some columns at a time, whose terms stay
+    /// in the cache.
     fn correct(&self, states: &mut Mat<f64>, inputs: &Mat<f64>, duration: f64) {
         if duration == 0.0 {
             return;
         }
         let modes = self.scale.len();
-        let mut term = self.rates_of(states, duration);
-        let driven = term.get_mut(modes.., ..);
-        matmul(driven, Accum::Add, self.input.as_ref(), inputs.as_ref(), duration, Par::Seq);
         // Terms fall at once: over a stretch this short the states keep their size.
         let enough = ROUNDING * states.norm_l2();
-        let mut power = 1.0;
-        loop {
-            *states += &term;
-            let size = term.norm_max();
-            if size <= enough || !size.is_finite() {
-                return;
+        let sizes = |count: usize| [(); 2].map(|()| Mat::<f64>::zeros(2 * modes, count));
+        let [mut before, mut term] = sizes(COLUMNS.min(states.ncols()));
+        for first in (0..states.ncols()).step_by(COLUMNS) {
+            let count = COLUMNS.min(states.ncols() - first);
+            if count < term.ncols() {
+                [before, term] = sizes(count);
             }
-            power += 1.0;
-            term = self.rates_of(&term, duration / power);
+            for j in 0..count {
+                before.col_as_slice_mut(j).copy_from_slice(states.col_as_slice(first + j));
+            }
+            let mut power = 1.0;
+            loop {
+                self.write_forces(&before, duration / power, &mut term);
+                if power == 1.0 {
+                    let inputs = inputs.get(.., first..first + count);
+                    let driven = term.get_mut(modes.., ..);
+                    matmul(driven, Accum::Add, self.input.as_ref(), inputs, duration, Par::Seq);
+                }
+                let (before_it, duration) = (&before, duration / power);
+                let add = AddTerm {
+                    equations: self,
+                    before: before_it,
+                    duration,
+                    term: &mut term,
+                    states,
+                    first,
+                };
+                let size = pulp::Arch::new().dispatch(add);
+                let goes_on = size > enough && size.is_finite();
+                if !goes_on {
+                    break;
+                }
+                power += 1.0;
+                std::mem::swap(&mut before, &mut term);
+            }
         }
+    }
+}
+
+/// Completes a term of a power series and adds it to states; its size. A closure would be no part of what
+/// vector instructions are chosen for.
+struct AddTerm<'a> {
+    equations: &'a Equations,
+    before: &'a Mat<f64>,
+    duration: f64,
+    term: &'a mut Mat<f64>,
+    states: &'a mut Mat<f64>,
+    /// First of the columns of the states.
+    first: usize,
+}
+
+impl pulp::NullaryFnOnce for AddTerm<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn call(self) -> f64 {
+        let mut squares = [0.0; LANES];
+        for j in 0..self.term.ncols() {
+            let term = self.term.col_as_slice_mut(j);
+            self.equations.complete(self.before.col_as_slice(j), self.duration, term);
+            add(term, self.states.col_as_slice_mut(self.first + j), &mut squares);
+        }
+        squares.iter().sum::<f64>().sqrt()
+    }
+}
+
+/// Adds numbers to others, and their squares to sums.
+#[inline(always)]
+fn add(numbers: &[f64], to: &mut [f64], squares: &mut [f64; LANES]) {
+    let rest = numbers.chunks_exact(LANES).remainder();
+    let mut blocks = to.chunks_exact_mut(LANES);
+    for (to, numbers) in blocks.by_ref().zip(numbers.chunks_exact(LANES)) {
+        for ((to, x), square) in to.iter_mut().zip(numbers).zip(&mut *squares) {
+            *to += x;
+            *square += x * x;
+        }
+    }
+    for ((to, x), square) in blocks.into_remainder().iter_mut().zip(rest).zip(squares) {
+        *to += x;
+        *square += x * x;
     }
 }
 

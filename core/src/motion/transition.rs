@@ -300,6 +300,7 @@ impl<'a> Transition<'a> {
         }
         // Else rounding would leave something of a force that a constant limit holds.
         let constant = onset.slope.iter().all(|slope| *slope == 0.0);
+        let slope = if constant { &[] } else { onset.slope.as_slice() };
         if constant && own.elastic.rank() == 1 && onset.jump[onset.point] == -1.0 {
             vanish.push(own.strains.start);
         }
@@ -308,7 +309,7 @@ impl<'a> Transition<'a> {
             let strains = &total[first + own.strains.start..first + own.strains.end];
             let roots = (0..own.elastic.rank()).map(|a| own.elastic.root()[(row, a)]);
             let mut force: f64 = roots.zip(strains).map(|(root, g)| root * g).sum();
-            for ((slope, weight), x) in onset.slope.iter().zip(&self.weight).zip(&*total) {
+            for ((slope, weight), x) in slope.iter().zip(&self.weight).zip(&*total) {
                 force += slope / weight * x;
             }
             jumps.iter().for_each(|(strain, jump)| total[first + strain] += jump * force);

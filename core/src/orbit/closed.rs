@@ -49,8 +49,8 @@ impl Orbit {
         self.start.as_ref()
     }
 
-    /// Passes along the orbit that has closed at the unknowns `y` and reads everything off it; also whether
-    /// a contact in a plane touches its limit.
+    /// Passes along the orbit that closes at the unknowns `y` and reads everything off it; also whether a
+    /// contact in a plane touches its limit.
     pub(super) fn read(
         mut self,
         shooting: &mut Shooting<'_>,
@@ -62,6 +62,7 @@ impl Orbit {
         let (system, half_wave) = (shooting.coordinates.system(), shooting.half_wave);
         let omega = self.response.omega;
         let span = TAU / omega * if half_wave { 0.5 } else { 1.0 };
+        let rotates = shooting.rotates();
         let mut state = shooting.state(y);
         let mut touches = false;
         for pass in 0..2 {
@@ -71,9 +72,13 @@ impl Orbit {
             let mut survey = Survey::new(system, omega, half_wave, highest, observe, quadrature);
             let first = state.clone();
             // The orbit has closed with this flow, so that it runs to the end.
-            let _ = shooting.flow.run(&mut state, span, &mut |passage| {
-                survey.include(&passage);
-            });
+            if pass == 0 && !rotates {
+                let _ = shooting.observed_image(y, Some(&mut |passage| survey.include(passage)));
+            } else {
+                let _ = shooting.flow.run(&mut state, span, &mut |passage| {
+                    survey.include(&passage);
+                });
+            }
             survey.finish();
             let observed = observe.len();
             // One that Newton's method has pushed to its limit touches it for an instant.

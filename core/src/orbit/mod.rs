@@ -5,6 +5,7 @@ mod closed;
 mod curve_stability;
 mod cycle;
 mod drift;
+mod first_state;
 mod fundamental_matrix;
 mod later_begin;
 mod linear_path;

@@ -7,10 +7,8 @@ use super::rotation::Rotation;
 use super::settings::OrbitSettings;
 use super::shooting::Shooting;
 use super::sliders::{choose, Assumption, Chosen};
-use super::start::{later, start_of};
-use crate::balance::{
-    ForcedBalance, HarmonicChoice, Kept, Point, PointStatus, Progress, Settings, Unknowns,
-};
+use super::start::start_of;
+use crate::balance::{Kept, Point, PointStatus, Progress, Unknowns};
 use crate::contact::Residual;
 use crate::model::Model;
 use crate::motion::{ModalSystem, State};
@@ -20,12 +18,6 @@ use crate::Error;
 use faer::c64;
 use std::sync::Arc;
 
-/// Harmonics of the balance that a cold start comes from: at least, at most, and units of the fastest rate
-/// per period for each. Where passes along the orbit are long, more harmonics save some of them.
-const START_HARMONICS: [usize; 2] = [9, 25];
-const PER_HARMONIC: f64 = 100.0;
-/// Closing error, relative to the motion, of a start that needs no better one.
-const NEAR: f64 = 1e-4;
 /// Rounds of following the motion itself, and spans in the first: each round doubles them.
 const ROUNDS: usize = 9;
 const FIRST_SPANS: usize = 4;
@@ -47,14 +39,25 @@ pub struct PeriodicOrbits<'a> {
     pub(super) sliders: Vec<f64>,
     pub(super) everywhere: Vec<usize>,
     /// The last balance that an orbit began with, and whether a neighbour was no better.
-    balanced: Option<Unknowns>,
-    beyond: bool,
+    pub(super) balanced: Option<Unknowns>,
+    pub(super) beyond: bool,
     pub(super) quadrature: Quadrature,
     pub(super) progress: &'a Progress<'a>,
     pub(super) kept: Option<&'a Kept<Orbit>>,
     pub(super) share: f64,
     /// Steps of the flow, transition matrices and time.
     pub(crate) profile: Profile,
+}
+
+/// What a pass along an orbit tells.
+struct Reading {
+    orbit: Orbit,
+    /// Whether a contact in a plane touches its limit.
+    touches: bool,
+    /// Closing error, relative to the motion, and the step that would close it, if there is one.
+    closing: f64,
+    error: f64,
+    left: Option<Vec<f64>>,
 }
 
 impl<'a> Plan<'a> {
@@ -182,17 +185,30 @@ impl<'a> PeriodicOrbits<'a> {
             let chosen = choose(&mut shooting, assumption, &mut y, newton, &mut iterations);
             (y, iterations, chosen)
         });
-        self.profile.evaluations += shooting.flow.steps;
-        let Some((y, iterations, chosen)) = solved else {
+        let steps = shooting.flow.steps;
+        self.profile.evaluations += steps;
+        let Some((mut y, mut iterations, chosen)) = solved else {
             return Ok(self.empty(omega, PointStatus::NotComputed));
         };
         if chosen == Chosen::Lost && shooting.interrupted() {
             return Ok(self.empty(omega, PointStatus::NotComputed));
         }
-        let mut residual = vec![0.0; y.len()];
-        shooting.residual(&y, &mut residual);
-        let size = crate::solve::norm(&y).max(f64::MIN_POSITIVE);
-        let closing = crate::solve::norm(&residual) / size;
+        let mut read = self.read(&mut shooting, omega, &y);
+        // The last step of Newton's method was not looked at.
+        if read.error > self.newton().tolerance
+            && read.closing <= CLOSED
+            && chosen == Chosen::Inside
+        {
+            let mut closer = y.clone();
+            let report = newton(&mut shooting, &mut closer, self.newton());
+            iterations += report.iterations;
+            if report.outcome == Outcome::Converged {
+                y = closer;
+            }
+            read = self.read(&mut shooting, omega, &y);
+        }
+        self.profile.evaluations += shooting.flow.steps - steps;
+        let Reading { mut orbit, touches, closing, left, .. } = read;
         if closing.is_nan() || closing > CLOSED || chosen == Chosen::Lost {
             let spent = shooting.flow.is_spent();
             let status = if spent { PointStatus::StepsLimit } else { PointStatus::Stalled };
@@ -201,13 +217,12 @@ impl<'a> PeriodicOrbits<'a> {
             orbit.response.iterations = iterations;
             return Ok(orbit);
         }
-        let mut left = vec![0.0; y.len()];
-        if !shooting.solve(&residual, &mut left) {
+        let Some(left) = left else {
             // Contacts have let go of a body that they alone hold: it may as well stand elsewhere.
             let floats = !system.rigid_modes().is_empty();
             let status = if floats { PointStatus::Free } else { PointStatus::Singular };
             return Ok(self.empty(omega, status));
-        }
+        };
         let known =
             match self.plan.rotation {
                 Some(_) => None,
@@ -216,12 +231,6 @@ impl<'a> PeriodicOrbits<'a> {
                 })?),
             };
         self.profile.factorisations += shooting.matrices;
-        let start = std::time::Instant::now();
-        let empty = self.empty(omega, PointStatus::Converged);
-        let (settings, quadrature) = (&self.plan.settings, &mut self.quadrature);
-        let (mut orbit, touches) =
-            empty.read(&mut shooting, &y, settings, self.plan.observe, quadrature);
-        self.profile.recovery += start.elapsed();
         orbit.response.residual = closing;
         orbit.response.iterations = iterations;
         orbit.response.error_estimate = left_error(&shooting, self.plan.observe, &left);
@@ -236,6 +245,28 @@ impl<'a> PeriodicOrbits<'a> {
             }
         }
         Ok(orbit)
+    }
+
+    /// Passes along the orbit that closes at the unknowns `y` and reads it off.
+    fn read(&mut self, shooting: &mut Shooting<'_>, omega: f64, y: &[f64]) -> Reading {
+        let start = std::time::Instant::now();
+        let empty = self.empty(omega, PointStatus::Converged);
+        let (settings, quadrature) = (&self.plan.settings, &mut self.quadrature);
+        let (orbit, touches) = empty.read(shooting, y, settings, self.plan.observe, quadrature);
+        self.profile.recovery += start.elapsed();
+        let mut residual = vec![0.0; y.len()];
+        shooting.residual(y, &mut residual);
+        let size = norm(y).max(f64::MIN_POSITIVE);
+        let mut left = vec![0.0; y.len()];
+        let determined =
+            residual.iter().all(|r| r.is_finite()) && shooting.solve(&residual, &mut left);
+        Reading {
+            orbit,
+            touches,
+            closing: norm(&residual) / size,
+            error: norm(&left) / size,
+            left: determined.then_some(left),
+        }
     }
 
     /// The orbit whose sliders are displaced by `sliders` \[m\] from rest, as far as Coulomb allows;
@@ -321,69 +352,5 @@ impl<'a> PeriodicOrbits<'a> {
             }
         }
         Some((y, iterations))
-    }
-
-    /// A start, or that of harmonic balance if it is better: where but one motion is possible, and each
-    /// further step of Newton's method is dear. Behind a point at which it was, neighbours are not asked.
-    fn nearer_start(
-        &mut self,
-        shooting: &mut Shooting<'_>,
-        omega: f64,
-        neighbour: &State,
-    ) -> Vec<f64> {
-        let misses = |shooting: &mut Shooting<'_>, y: &[f64]| {
-            let mut residual = vec![0.0; y.len()];
-            shooting.residual(y, &mut residual);
-            norm(&residual) / norm(y)
-        };
-        let y = shooting.unknowns(neighbour);
-        let own = if self.beyond { f64::INFINITY } else { misses(shooting, &y) };
-        let near = own <= NEAR || (!self.beyond && shooting.price() < 1.0);
-        if near || !self.plan.unique {
-            return y;
-        }
-        let other = shooting.unknowns(&self.harmonic_start(omega, 0.0));
-        let balanced = misses(shooting, &other);
-        if balanced < own {
-            self.beyond = balanced <= NEAR;
-            other
-        } else {
-            y
-        }
-    }
-
-    /// The state of a harmonic balance of low order at an angle of the period; rest where it
-    /// has none.
-    pub(super) fn harmonic_start(&mut self, omega: f64, angle: f64) -> State {
-        let rest = State::rest(&self.plan.system);
-        let forced = self.plan.model.compliance().forced_harmonics();
-        let [least, most] = START_HARMONICS;
-        let turn = std::f64::consts::TAU * self.plan.system.rate(omega) / omega;
-        let suited = ((turn / PER_HARMONIC) as usize).clamp(least, most);
-        let highest = forced.last().copied().unwrap_or(1).max(suited);
-        let settings = Settings {
-            harmonics: HarmonicChoice::Fixed(highest),
-            max_harmonics: highest,
-            residual: self.plan.settings.residual,
-            ..Settings::default()
-        };
-        let Ok(mut balance) = ForcedBalance::new(self.plan.model, settings, &self.everywhere)
-        else {
-            return rest;
-        };
-        balance = balance.watched(self.progress).unjudged();
-        let known = self.balanced.take().filter(|_| self.plan.unique);
-        let found = balance.solve(omega, known.as_ref());
-        self.balanced = found.as_ref().ok().and_then(|point| point.unknowns().cloned());
-        match found {
-            Ok(point) if point.status == PointStatus::Converged => start_of(
-                self.plan.with_history.as_deref().unwrap_or(self.plan.model),
-                &self.plan.system,
-                self.plan.settings.residual,
-                &later(&point, angle),
-                balance.half_wave(),
-            ),
-            _ => rest,
-        }
     }
 }

@@ -7,10 +7,11 @@
 //! cyclic matrix of all segments, which keeps the small ones that their product loses (Kressner
 //! 2006, section 2).
 
+use super::loop_memory::LoopMemory;
 use super::shooting::Shooting;
 use crate::model::Model;
 use crate::motion::{ContactState, ModalSystem};
-use crate::solve::System as _;
+use crate::solve::System;
 use faer::{c64, Mat};
 
 /// Growth of a small change over a segment, as the Frobenius norm of its transition matrix, beyond
@@ -59,6 +60,35 @@ pub(super) fn follow(
     let ends = segments.iter_mut().map(|one| (&mut one.image, &mut one.derivative));
     shooting.join(starts, ends)?;
     Some(segments)
+}
+
+impl Shooting<'_> {
+    /// Completes what contacts without sliders remember behind segments that have all been followed, in
+    /// the image and the derivative of each.
+    fn join<'s>(
+        &mut self,
+        starts: &[f64],
+        segments: impl ExactSizeIterator<Item = (&'s mut Vec<f64>, &'s mut Mat<f64>)>,
+    ) -> Option<()> {
+        let (size, count) = (self.coordinates.size(), segments.len());
+        if count == 1 || LoopMemory::places(self.coordinates.system()) == 0 {
+            return Some(());
+        }
+        self.memory.join()?;
+        let all = System::size(self);
+        let segments = segments.zip(starts.chunks_exact(all)).enumerate();
+        for (number, ((image, derivative), start)) in segments {
+            let side = if self.symmetric && number + 1 == count { -1.0 } else { 1.0 };
+            let numbers = self.memory.behind(number, start);
+            image[size..].iter_mut().zip(numbers).for_each(|(to, own)| *to = side * own);
+            if derivative.nrows() > 0 {
+                self.memory.derive(number, derivative);
+                let mut rows = derivative.get_mut(size.., ..);
+                rows *= faer::Scale(side);
+            }
+        }
+        Some(())
+    }
 }
 
 /// Start states of twice as many segments.

@@ -133,6 +133,11 @@ impl<'a> Shooting<'a> {
         state
     }
 
+    /// Whether the flow is confined to the part of a period after which sectors have changed their roles.
+    pub(super) fn rotates(&self) -> bool {
+        self.rotation.is_some()
+    }
+
     /// Has the span begin a share of it later.
     pub(super) fn begin_later(&mut self, share: f64) {
         self.begin = share * self.span;
@@ -176,33 +181,6 @@ impl<'a> Shooting<'a> {
         self.last = None;
     }
 
-    /// Completes what contacts without sliders remember behind segments that have all been followed, in
-    /// the image and the derivative of each.
-    pub(super) fn join<'s>(
-        &mut self,
-        starts: &[f64],
-        segments: impl ExactSizeIterator<Item = (&'s mut Vec<f64>, &'s mut Mat<f64>)>,
-    ) -> Option<()> {
-        let (size, count) = (self.coordinates.size(), segments.len());
-        if count == 1 || LoopMemory::places(self.coordinates.system()) == 0 {
-            return Some(());
-        }
-        self.memory.join()?;
-        let all = System::size(self);
-        let segments = segments.zip(starts.chunks_exact(all)).enumerate();
-        for (number, ((image, derivative), start)) in segments {
-            let side = if self.symmetric && number + 1 == count { -1.0 } else { 1.0 };
-            let numbers = self.memory.behind(number, start);
-            image[size..].iter_mut().zip(numbers).for_each(|(to, own)| *to = side * own);
-            if derivative.nrows() > 0 {
-                self.memory.derive(number, derivative);
-                let mut rows = derivative.get_mut(size.., ..);
-                rows *= faer::Scale(side);
-            }
-        }
-        Some(())
-    }
-
     /// Leaves what elements hold that never slip out of a derivative.
     pub(super) fn hold_origins(&self, matrix: &mut Mat<f64>) {
         self.memory.hold_origins(matrix);
@@ -215,7 +193,17 @@ impl<'a> Shooting<'a> {
 
     /// Coordinates after the span, mirrored under half-wave symmetry.
     pub(super) fn image(&mut self, y: &[f64]) -> Option<Vec<f64>> {
-        if let Some((_, image, slipped)) = self.last.as_ref().filter(|(last, ..)| last == y) {
+        self.observed_image(y, None)
+    }
+
+    /// The same; what the flow passes is shown to an observer.
+    pub(super) fn observed_image(
+        &mut self,
+        y: &[f64],
+        mut observe: Option<&mut dyn FnMut(&FlowEvent<'_>)>,
+    ) -> Option<Vec<f64>> {
+        let known = self.last.as_ref().filter(|(last, ..)| observe.is_none() && last == y);
+        if let Some((_, image, slipped)) = known {
             self.slipped.clone_from(slipped);
             if std::mem::take(&mut self.earlier) {
                 self.derivative = None;
@@ -235,6 +223,9 @@ impl<'a> Shooting<'a> {
         let run = self.flow.run(&mut state, self.begin + self.span, &mut |passage| {
             LinearPhase::record(phases, system, &passage);
             memory.follow(&passage);
+            if let Some(observe) = &mut observe {
+                observe(&passage);
+            }
         });
         self.steps = self.flow.steps - before;
         self.slipped = (0..self.limits.len())
@@ -359,6 +350,11 @@ impl System for Shooting<'_> {
         let stretches = self.phases.iter().filter(|phase| phase.is_linear()).count();
         let (size, system) = (self.coordinates.size(), self.coordinates.system());
         matrix_price(system, size, stretches, self.steps)
+    }
+
+    /// An orbit is passed along once more where it is read.
+    fn is_seen_again(&self) -> bool {
+        true
     }
 
     fn interrupted(&self) -> bool {

@@ -3,8 +3,11 @@
 use super::quadrature::Quadrature;
 use crate::balance::Point;
 use crate::contact::{PointState, PointSummary};
-use crate::motion::{ContactState, Event, Extremes, FlowEvent, FlowSegment, ModalSystem, Turn};
-use faer::{c64, Mat};
+use crate::motion::{
+    ContactState, Event, Extremes, FlowEvent, FlowSegment, ModalSystem, Turn, Values,
+};
+use faer::linalg::matmul::matmul;
+use faer::{c64, Accum, Mat, Par};
 use std::f64::consts::TAU;
 
 /// Quadrature nodes of a segment in which contacts slip little by little or in a plane, beyond those that the
@@ -29,6 +32,10 @@ pub(super) struct Survey<'a> {
     /// Rows that give the observed DOFs, and after them the contact displacements.
     shapes: Vec<Vec<f64>>,
     extremes: Extremes,
+    /// The motion at the nodes of a stretch, cos and −sin of all orders there, and sums of products of both.
+    values: Values,
+    waves: Mat<f64>,
+    sums: Mat<f64>,
     /// Least distance of each contact in a plane from its limit while it sticks, relative to it.
     room: Vec<f64>,
     /// Lowest and highest value of each shape.
@@ -63,6 +70,9 @@ impl<'a> Survey<'a> {
             range: vec![[f64::INFINITY, f64::NEG_INFINITY]; shapes.len()],
             shapes,
             extremes: Extremes::default(),
+            values: Values::default(),
+            waves: Mat::new(),
+            sums: Mat::new(),
             room: vec![f64::INFINITY; system.planes().len()],
             contacts: vec![PointSummary::default(); system.points()],
             events: Vec::new(),
@@ -95,14 +105,14 @@ impl<'a> Survey<'a> {
         let (system, modes, points) = (self.system, self.system.modes(), self.system.points());
         let angle = self.omega * segment.duration();
         let count = nodes(segment, angle * self.orders as f64);
-        let rule = self.quadrature.rule(count).to_vec();
-        let values = segment.series.values(rule.iter().map(|(x, _)| x * segment.length));
+        let Self { quadrature, values, waves, sums, .. } = self;
+        let rule = quadrature.rule(count);
+        segment.series.write_values(rule.iter().map(|(x, _)| x * segment.length), values);
         let slips = segment.regime.points.iter().any(|state| state.slips());
         let (mut damping, mut load) = (vec![0.0; modes], vec![0.0; modes]);
         let step = if self.half_wave { 2 } else { 1 };
         let orders: Vec<usize> = (usize::from(self.half_wave)..self.orders).step_by(step).collect();
-        // cos and −sin of all orders, node after node.
-        let mut waves = Mat::<f64>::zeros(2 * orders.len(), count);
+        waves.resize_with(2 * orders.len(), count, |_, _| 0.0);
         for (node, &(x, weight)) in rule.iter().enumerate() {
             let velocity = values.velocity.col_as_slice(node);
             let phase = self.omega * segment.start + x * angle;
@@ -144,7 +154,9 @@ impl<'a> Survey<'a> {
             }
         }
         for (first, motion) in [(0, &values.displacement), (modes, &values.force)] {
-            let sums = motion * waves.transpose();
+            sums.resize_with(motion.nrows(), waves.nrows(), |_, _| 0.0);
+            let (to, nodes) = (sums.as_mut(), waves.transpose());
+            matmul(to, Accum::Replace, motion.as_ref(), nodes, 1.0, Par::Seq);
             for (place, order) in orders.iter().enumerate() {
                 let row = &mut self.series[order * (modes + points) + first..];
                 let parts =

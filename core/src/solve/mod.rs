@@ -49,6 +49,12 @@ pub trait System {
         2.0
     }
 
+    /// Whether the residual at the solution is found once more anyway: then a last step whose error is known
+    /// to be small needs none.
+    fn is_seen_again(&self) -> bool {
+        false
+    }
+
     /// Residual and whole Jacobian at `x`; by forward differences unless the system knows better.
     fn jacobian(&mut self, x: &[f64], residual: &mut [f64], out: &mut Mat<f64>) {
         differences(self, x, residual, out);

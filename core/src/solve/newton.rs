@@ -237,11 +237,20 @@ impl<'a, S: System> Newton<'a, S> {
         if before && kept && !self.within && contraction > ROUNDED {
             return Some(Outcome::Converged);
         }
+        // One more with the same Jacobian would contract as this one.
+        let enough = OF_KEPT * self.tolerance;
+        if kept && self.system.is_seen_again() && left * contraction <= enough {
+            let known = self.system.solve(&self.residual, &mut self.step);
+            let step = self.system.relative_size(&self.step, self.x);
+            if known && step <= CLOSE && step * contraction <= enough {
+                self.x.iter_mut().zip(&self.step).for_each(|(x, step)| *x -= step);
+                return Some(Outcome::Converged);
+            }
+        }
         if self.within {
             // Newton's own last step would leave hardly more than rounding. One with a Jacobian
             // kept leaves what the step that would follow tells, at the price of a substitution;
             // it is taken once.
-            let enough = OF_KEPT * self.tolerance;
             let known = kept && !before && self.system.solve(&self.residual, &mut self.step);
             if !kept || before || (known && self.system.relative_size(&self.step, self.x) <= enough)
             {
