@@ -3,6 +3,7 @@
 use super::instants::Instants;
 use super::row_sums::{padded, RowSums};
 use super::Harmonics;
+use pulp::NullaryFnOnce;
 use std::sync::Arc;
 
 /// Samples per period and harmonic on which turning points are bracketed. A polynomial of degree
@@ -340,14 +341,24 @@ fn dips(here: f64, next: f64, after: f64) -> bool {
 
 /// Whether the slope changes its sign or comes closest to zero somewhere in a block of samples.
 fn may_turn(slope: &[f64]) -> bool {
-    pulp::Arch::new().dispatch(|| {
+    pulp::Arch::new().dispatch(Turns(slope))
+}
+
+/// A block of samples; a closure would not be compiled for the widest vectors.
+struct Turns<'a>(&'a [f64]);
+
+impl NullaryFnOnce for Turns<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn call(self) -> bool {
         let mut found = false;
-        for ((here, next), after) in slope.iter().zip(&slope[1..]).zip(&slope[2..]) {
+        for ((here, next), after) in self.0.iter().zip(&self.0[1..]).zip(&self.0[2..]) {
             found |= (*here > 0.0) != (*next > 0.0);
             found |= (next.abs() < here.abs()) & (next.abs() <= after.abs());
         }
         found
-    })
+    }
 }
 
 /// Where the parabola through three equidistant values of which the first two differ in sign
