@@ -5,9 +5,13 @@
 //! line of motion, `tan(φ/2) ∝ exp(−∫ k_t |du|/(μN))` with φ the angle between the two. So the only
 //! error of a sampled evaluation is that of the straight lines, of second order in their length.
 
-use super::dual::Real;
+use super::dual::{Dual, Real};
 use super::law::{squared, Coulomb};
+use crate::contact::return_map::ReturnMapJacobian;
+use crate::contact::ContactLaw as _;
 
+/// Numbers that a step depends on: traction before (2), tangential change (2), N before and after.
+const INPUTS: usize = 6;
 /// Distance from the cone, relative to it, that is none.
 const ON_CONE: f64 = 1e-12;
 /// Least share of an angle that is told from none.
@@ -115,5 +119,98 @@ impl Coulomb {
             [limit * (cos * along[0] - sin * along[1]), limit * (cos * along[1] + sin * along[0])]
         };
         Passage { traction: turned, open: 0.0, slipping: 1.0 - share }
+    }
+
+    /// Takes a step that sticks from end to end; nothing of any other. The distance from the cone is convex
+    /// along the step: inside at its end, it is so throughout.
+    pub(super) fn spring_step(
+        &self,
+        [before, after]: [&[f64]; 2],
+        state: &mut [f64],
+        force: &mut [f64],
+    ) -> bool {
+        let (k, to) = (self.tangential_stiffness, self.pressing(after));
+        let trial = self.pair(|i| state[i] + k * (after[i] - before[i]));
+        let limit = self.friction * to;
+        let inside = squared(trial) <= limit * limit;
+        if self.pressing(before) <= 0.0 || to <= 0.0 || !inside {
+            return false;
+        }
+        state.copy_from_slice(&trial[..self.directions]);
+        force[..self.directions].copy_from_slice(state);
+        if let Some(normal) = force.get_mut(self.directions) {
+            *normal = to - self.balanced();
+        }
+        true
+    }
+
+    /// Takes any step with its derivative.
+    pub(super) fn differentiated_step(
+        &self,
+        [before, after]: [&[f64]; 2],
+        state: &mut [f64],
+        force: &mut [f64],
+        jacobian: &mut ReturnMapJacobian,
+    ) {
+        let (count, directions) = (self.displacements(), self.directions);
+        jacobian.reset(count, directions);
+        if self.spring_step([before, after], state, force) {
+            return self.differentiate_spring(jacobian);
+        }
+        let (from, to) = (self.pressing(before), self.pressing(after));
+        if let Some(normal) = force.get_mut(directions) {
+            *normal = to.max(0.0) - self.balanced();
+        }
+        let du = |i: usize| after[i] - before[i];
+        let input = |value: f64, index: usize| Dual::<INPUTS>::variable(value, index);
+        let passage = self.step(
+            self.pair(|i| input(state[i], i)),
+            self.pair(|i| input(du(i), 2 + i)),
+            input(from, 4),
+            input(to, 5),
+        );
+        // Slip that begins with the end of the step is none.
+        if from > 0.0 && passage.open == 0.0 && passage.slipping == 0.0 {
+            for (i, traction) in passage.traction[..directions].iter().enumerate() {
+                (state[i], force[i]) = (traction.value(), traction.value());
+            }
+            return self.differentiate_spring(jacobian);
+        }
+        let normal = self.normal_stiffness.unwrap_or(0.0);
+        for (i, traction) in passage.traction[..directions].iter().enumerate() {
+            let slopes = &traction.slopes;
+            (state[i], force[i]) = (traction.value(), traction.value());
+            for j in 0..directions {
+                jacobian.by_state[i * directions + j] = slopes[j];
+                jacobian.by_after[i * count + j] = slopes[2 + j];
+                jacobian.by_before[i * count + j] = -slopes[2 + j];
+            }
+            if count > directions {
+                jacobian.by_before[i * count + directions] = normal * slopes[4];
+                jacobian.by_after[i * count + directions] = normal * slopes[5];
+            }
+            jacobian.force_by_state[i * directions + i] = 1.0;
+            jacobian.slipping[i] = passage.slipping;
+        }
+        if count > directions {
+            jacobian.slipping[directions] = passage.open;
+            if to > 0.0 {
+                jacobian.force_by_after[directions * count + directions] = normal;
+            }
+        }
+    }
+
+    /// Writes the derivative of a step that sticks from end to end into one that is blank.
+    fn differentiate_spring(&self, jacobian: &mut ReturnMapJacobian) {
+        let (count, directions) = (self.displacements(), self.directions);
+        for i in 0..directions {
+            jacobian.by_state[i * directions + i] = 1.0;
+            jacobian.by_after[i * count + i] = self.tangential_stiffness;
+            jacobian.by_before[i * count + i] = -self.tangential_stiffness;
+            jacobian.force_by_state[i * directions + i] = 1.0;
+        }
+        if let (true, Some(normal)) = (count > directions, self.normal_stiffness) {
+            jacobian.force_by_after[directions * count + directions] = normal;
+        }
     }
 }
