@@ -6,7 +6,7 @@
 //! as the error of the solution is judged.
 
 use super::slip_jacobian::{Border, Loads};
-use crate::solve::{gmres, norm, KrylovSettings};
+use crate::solve::{dot, gmres, norm, KrylovSettings};
 use crate::structure::{Compliance, ContactCoordinates, ContactShapes, ModalOrders, QuasiStatic};
 use faer::{Mat, MatRef};
 
@@ -22,9 +22,6 @@ const MOST_PRODUCTS: usize = 400;
 const USEFUL: f64 = 0.5;
 /// Tolerance of what damping couples within a product, against that of the whole.
 const WITHIN: f64 = 1e-2;
-
-/// Sums of a scalar product.
-const SIDE_BY_SIDE: usize = 8;
 
 /// What a product with `I − G ∂Q` is made of.
 #[derive(Clone, Copy)]
@@ -93,11 +90,11 @@ impl Answers {
 }
 
 impl KrylovNewton {
-    /// Of the points of contacts with a tangent; with the harmonics in `rough`, fast modes follow their
-    /// loads at once: directions are corrected by what follows them.
+    /// Of the points of contacts with a tangent, and those of them that yield; with the harmonics in `rough`,
+    /// fast modes follow their loads at once: directions are corrected by what follows them.
     pub(super) fn new(
         compliance: &dyn Compliance,
-        active: &[usize],
+        [active, yielding]: [&[usize]; 2],
         rough: Option<&ModalOrders>,
     ) -> Self {
         let points = active.to_vec();
@@ -105,7 +102,10 @@ impl KrylovNewton {
             return Self { points, answers: Answers::Whole(ContactShapes::default()) };
         };
         let answers = match rough.and_then(|orders| modes.quasi_static(orders)) {
-            Some(rough) => Answers::Rough(rough.part(active)),
+            Some(rough) => {
+                let places = yielding.iter().filter_map(|point| active.binary_search(point).ok());
+                Answers::Rough(rough.part(active, places.collect()))
+            }
             None => Answers::Whole(modes.part(active)),
         };
         Self { points, answers }
@@ -241,29 +241,20 @@ impl KrylovNewton {
 
     /// `∂Q v` of the active points, slots × points, in the room for it.
     fn loaded<'b>(&self, loads: Loads<'_>, v: &[f64], out: &'b mut [f64]) -> MatRef<'b, f64> {
-        let mut first = 0;
-        for load in loads.loads.iter().filter(|load| load.active) {
-            let size = load.value.len();
-            let rows = load.tangent.chunks_exact(size).zip(&mut out[first..first + size]);
-            for (row, out) in rows {
-                *out = dot(row, &v[first..first + size]);
+        let product = || {
+            let mut first = 0;
+            for load in loads.loads.iter().filter(|load| load.active) {
+                let size = load.value.len();
+                let rows = load.tangent.chunks_exact(size).zip(&mut out[first..first + size]);
+                for (row, out) in rows {
+                    *out = dot(row, &v[first..first + size]);
+                }
+                first += size;
             }
-            first += size;
-        }
-        debug_assert_eq!(first, self.points.len() * loads.slots);
+        };
+        pulp::Arch::new().dispatch(product);
         MatRef::from_column_major_slice(out, loads.slots, self.points.len())
     }
-}
-
-/// Scalar product, by sums that go through the processor side by side.
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let (mut a, mut b) = (a.chunks_exact(SIDE_BY_SIDE), b.chunks_exact(SIDE_BY_SIDE));
-    let mut sums = [0.0; SIDE_BY_SIDE];
-    for (a, b) in (&mut a).zip(&mut b) {
-        sums.iter_mut().zip(a.iter().zip(b)).for_each(|(sum, (a, b))| *sum += a * b);
-    }
-    let rest = a.remainder().iter().zip(b.remainder());
-    sums.iter().sum::<f64>() + rest.map(|(a, b)| a * b).sum::<f64>()
 }
 
 /// Series of all points, one after the other.

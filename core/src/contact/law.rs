@@ -169,6 +169,11 @@ pub trait ContactLaw: Send + Sync + std::fmt::Debug {
         None
     }
 
+    /// The same as far as the amplitudes of a motion alone show it, without any instant.
+    fn surely_unslipped(&self, _begun: &AssumedStart, _motion: Motion<'_>) -> Option<Unslipped> {
+        None
+    }
+
     /// The same law with motions that begin elsewhere, as under static loads; nothing of a law whose
     /// friction does not depend on it beyond its residual force.
     fn with_history(&self, _displacement: &[f64], _state: &[f64]) -> Option<Box<dyn ContactLaw>> {

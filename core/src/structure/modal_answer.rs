@@ -129,7 +129,8 @@ impl ContactCoordinates for ContactModes {
         let follows = |order: &Order| {
             let Inverse::Diagonal(inverse) = &order.inverse else { return false };
             let others = inverse.iter().zip(&self.omega_squared).skip(slow);
-            others.map(|(z, k)| (z * *k - one).norm()).all(|change| change <= QUASI_STATIC)
+            let mut change = others.map(|(z, k)| (z * *k - one).norm_sqr());
+            change.all(|squared| squared <= QUASI_STATIC * QUASI_STATIC)
         };
         if self.is_coupled() || !at.orders.iter().all(follows) {
             return None;

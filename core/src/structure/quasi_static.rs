@@ -9,13 +9,24 @@ use super::contact_coordinates::ModalOrders;
 use super::contact_shapes::{displace, excite, gather};
 use faer::{Mat, MatRef};
 
-/// A structure at some of its contacts, roughly.
+/// A structure at its contacts, or at some of them, roughly.
 #[derive(Debug)]
 pub struct QuasiStatic {
     /// Ψᵀ of the slowest modes, modes × contacts.
     shapes: Rounded,
-    /// Flexibility of all others between the contacts.
+    /// Flexibility of all others, contacts × contacts with a load.
     flexibility: Rounded,
+    /// The contacts that may have a load, if not all of them do.
+    loaded: Option<Loaded>,
+}
+
+/// Contacts with a load.
+#[derive(Debug)]
+struct Loaded {
+    /// Their positions.
+    places: Vec<usize>,
+    /// Ψᵀ of them.
+    shapes: Rounded,
 }
 
 /// A matrix of single precision in a unit.
@@ -49,28 +60,37 @@ impl Rounded {
 impl QuasiStatic {
     /// Of the shapes of the slowest modes at all contacts, and the flexibility of the others.
     pub(super) fn new(shapes: MatRef<'_, f64>, flexibility: MatRef<'_, f64>) -> Self {
-        Self { shapes: Rounded::of(shapes), flexibility: Rounded::of(flexibility) }
+        let (shapes, flexibility) = (Rounded::of(shapes), Rounded::of(flexibility));
+        Self { shapes, flexibility, loaded: None }
     }
 
-    /// The same at some of the contacts.
+    /// The same at some of the contacts, of which those at some places may have a load.
     #[must_use]
-    pub fn part(&self, contacts: &[usize]) -> Self {
-        let mut numbers = Mat::zeros(contacts.len(), contacts.len());
-        for (at, &j) in contacts.iter().enumerate() {
-            let column = self.flexibility.numbers.col_as_slice(j);
+    pub fn part(&self, contacts: &[usize], places: Vec<usize>) -> Self {
+        let mut numbers = Mat::zeros(contacts.len(), places.len());
+        for (at, &place) in places.iter().enumerate() {
+            let column = self.flexibility.numbers.col_as_slice(contacts[place]);
             let entries = numbers.col_as_slice_mut(at).iter_mut().zip(contacts);
             entries.for_each(|(entry, &i)| *entry = column[i]);
         }
         let flexibility = Rounded { unit: self.flexibility.unit, numbers };
-        Self { shapes: self.shapes.part(contacts), flexibility }
+        let shapes = self.shapes.part(contacts);
+        let loaded = Some(Loaded { shapes: shapes.part(&places), places });
+        Self { shapes, flexibility, loaded }
     }
 
     /// Displacements by loads, slots × contacts both.
     #[must_use]
     pub fn answer(&self, at: &ModalOrders, load: MatRef<'_, f64>) -> Mat<f64> {
-        let Self { shapes, flexibility } = self;
-        let load = Rounded::of(load);
-        let forces = excite(shapes.matrix(), load.matrix());
+        let Self { shapes, flexibility, loaded } = self;
+        let (load, excited) = match loaded {
+            Some(Loaded { places, shapes }) => {
+                let own = Mat::from_fn(load.nrows(), places.len(), |i, j| load[(i, places[j])]);
+                (Rounded::of(own.as_ref()), shapes)
+            }
+            None => (Rounded::of(load), shapes),
+        };
+        let forces = excite(excited.matrix(), load.matrix());
         let unit = load.unit * shapes.unit;
         let mut motion =
             Mat::from_fn(forces.nrows(), forces.ncols(), |i, j| unit * f64::from(forces[(i, j)]));

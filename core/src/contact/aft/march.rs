@@ -98,6 +98,17 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
         (samples.sign > 0.0 || lost.value.iter().all(|q| *q == 0.0)).then_some(lost)
     }
 
+    /// The same as far as the amplitudes of a motion alone show it.
+    pub(super) fn surely_unslipped(
+        &self,
+        motion: Motion<'_>,
+        begun: &AssumedStart,
+    ) -> Option<Unslipped> {
+        let lost = self.law.surely_unslipped(begun, motion)?;
+        let mirrored = motion.table.harmonics().half_wave();
+        (!mirrored || lost.value.iter().all(|q| *q == 0.0)).then_some(lost)
+    }
+
     /// The first instant, reached without any slip as far as the law admits it.
     pub(super) fn start(&self, samples: &Samples, begun: &AssumedStart) -> Step {
         let (before, state) = (&begun.displacement, begun.state.clone());

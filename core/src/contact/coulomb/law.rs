@@ -217,25 +217,12 @@ impl ContactLaw for Coulomb {
             .collect()
     }
 
-    /// The cone is convex: what is in it at all instants does not leave it on the lines between them.
     fn unslipped(&self, begun: &AssumedStart, displacement: &[f64]) -> Option<Unslipped> {
-        let k = self.tangential_stiffness;
-        let offset = self.pair(|i| k * begun.displacement[i] - begun.state[i]);
-        let inside = |u: &[f64]| {
-            let limit = self.friction * self.pressing(u);
-            let [x, y] = self.pair(|i| k * u[i] - offset[i]);
-            limit > 0.0 && squared([x, y]) <= limit * limit
-        };
-        let count = self.displacements();
-        if self.pressing(&begun.displacement) <= 0.0
-            || !displacement.chunks_exact(count).all(inside)
-        {
-            return None;
-        }
-        let mut value = offset[..self.directions].to_vec();
-        value.resize(count, self.balanced() - self.normal_at_rest());
-        let rows = begun.rate.len() / count * self.directions;
-        Some(Unslipped { value, rate: begun.rate[..rows].iter().map(|rate| k * rate).collect() })
+        self.within_cone(begun, displacement)
+    }
+
+    fn surely_unslipped(&self, begun: &AssumedStart, motion: Motion<'_>) -> Option<Unslipped> {
+        self.within_bounds(begun, motion)
     }
 
     fn springs(&self, before: &[f64], after: &[f64], state: &mut [f64], force: &mut [f64]) -> bool {

@@ -136,8 +136,10 @@ impl Coulomb {
         if self.pressing(before) <= 0.0 || to <= 0.0 || !inside {
             return false;
         }
-        state.copy_from_slice(&trial[..self.directions]);
-        force[..self.directions].copy_from_slice(state);
+        // Numbers one by one: so few are not worth a call.
+        for ((state, force), trial) in state.iter_mut().zip(&mut *force).zip(trial) {
+            (*state, *force) = (trial, trial);
+        }
         if let Some(normal) = force.get_mut(self.directions) {
             *normal = to - self.balanced();
         }
