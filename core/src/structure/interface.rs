@@ -176,3 +176,32 @@ impl Compliance for InterfaceCompliance {
         [modes * (20.0 + 0.5 * contacts * contacts) + whole, displacement]
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    /// Setting up takes one eigenproblem, and what a sweep asks for no other.
+    #[test]
+    fn frequencies_without_contacts_are_found_only_when_all_are_asked_for() {
+        let size = 40;
+        let between = |i: usize, j: usize| match i.abs_diff(j) {
+            0 => 2.5,
+            1 => -1.0,
+            _ => 0.0,
+        };
+        let stiffness = Mat::from_fn(size, size, between);
+        let mass = Mat::<f64>::identity(size, size);
+        let damping = faer::Scale(0.1) * &mass;
+        let structure = Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref());
+        let (rows, held) = (mass.clone(), faer::Scale(3.0) * &mass);
+        let ports = Ports { rows, stiffness: held, loads: Vec::new() };
+        let compliance = InterfaceCompliance::new(&structure.unwrap(), &ports).unwrap().unwrap();
+        let [stuck, free] = compliance.lowest_frequencies().unwrap();
+        assert!((stuck * stuck - free * free - 3.0).abs() < 1e-5);
+        assert!(compliance.free.get().is_none());
+        let all = compliance.free_frequencies();
+        assert!((all[0] / free - 1.0).abs() < 1e-5 && all.len() == size);
+    }
+}

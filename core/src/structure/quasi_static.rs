@@ -104,3 +104,63 @@ impl QuasiStatic {
         })
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::super::contact_coordinates::{Inverse, Order};
+    use super::*;
+    use faer::c64;
+
+    /// Whatever the unit of loads and shapes is, also where their squares would not be single numbers.
+    #[test]
+    fn answers_are_those_of_the_matrices_in_any_unit() {
+        let number = |i: usize, j: usize| ((3 * i + 7 * j) as f64).sin();
+        for unit in [1.0, 1e-30, 1e30] {
+            let shapes = Mat::from_fn(4, 50, |i, j| unit * number(i, j));
+            let flexibility = Mat::from_fn(50, 50, |i, j| unit * number(i.min(j), i.max(j)));
+            let inverse: Vec<c64> = (0..4).map(|j| c64::new(1.0, j as f64) / unit).collect();
+            let order =
+                Order { harmonic: 1, slot: 0, rate: 1.0, inverse: Inverse::Diagonal(inverse) };
+            let at = ModalOrders { orders: vec![order] };
+            let places = vec![1, 2, 5];
+            let contacts: Vec<usize> = (0..50).step_by(3).collect();
+            let load = Mat::from_fn(2, contacts.len(), |i, j| {
+                if places.contains(&j) {
+                    unit * number(i, j + 1)
+                } else {
+                    0.0
+                }
+            });
+            let exact = |shapes: &Mat<f64>, flexibility: &Mat<f64>| {
+                let mut motion = &load * shapes.transpose();
+                at.divide(&mut motion);
+                motion * shapes + &load * flexibility
+            };
+            let own = |matrix: &Mat<f64>, all: bool| {
+                let row = |i: usize| if all { contacts[i] } else { i };
+                let rows = if all { contacts.len() } else { matrix.nrows() };
+                Mat::from_fn(rows, contacts.len(), |i, j| matrix[(row(i), contacts[j])])
+            };
+            let expected = exact(&own(&shapes, false), &own(&flexibility, true));
+            let whole = QuasiStatic::new(shapes.as_ref(), flexibility.as_ref());
+            let mut spread = Mat::zeros(2, 50);
+            contacts
+                .iter()
+                .enumerate()
+                .for_each(|(j, &at)| spread.col_mut(at).copy_from(load.col(j)));
+            let all = whole.answer(&at, spread.as_ref());
+            let part = whole.part(&contacts, places).answer(&at, load.as_ref());
+            let size = expected.norm_max();
+            assert!(size > 0.0);
+            for (j, &place) in contacts.iter().enumerate() {
+                for i in 0..2 {
+                    for got in [part[(i, j)], all[(i, place)]] {
+                        let error = (got - expected[(i, j)]).abs();
+                        assert!(error < 1e-6 * size, "{unit:e}: {error:e} of {size:e}");
+                    }
+                }
+            }
+        }
+    }
+}

@@ -216,3 +216,56 @@ impl Coulomb {
         }
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::contact::Closure;
+
+    fn random(seed: usize) -> f64 {
+        let x = (seed as f64 * 12.9898 + 4.1).sin() * 43758.5453;
+        x - x.floor() - 0.5
+    }
+
+    /// A step of the spring is that of the return map, to the last digit and with one derivative for
+    /// all; of any other nothing is taken.
+    #[test]
+    fn steps_of_the_spring_are_those_that_stick() {
+        let mut taken = [0, 0];
+        for directions in [1, 2] {
+            let law = Coulomb::new(directions, 0.4, 150.0, Some(200.0), Closure::Preload(20.0));
+            let law = law.unwrap();
+            let mut spring: Option<ReturnMapJacobian> = None;
+            for case in 0..500 {
+                let number = |i: usize| 0.25 * random(31 * case + i);
+                let before: Vec<f64> = (0..=directions).map(number).collect();
+                let after: Vec<f64> =
+                    before.iter().enumerate().map(|(i, u)| u + 0.3 * number(7 + i)).collect();
+                // Within the cone at the begin.
+                let limit = 0.4 * law.pressing(&before).max(0.0);
+                let begun: Vec<f64> =
+                    (0..directions).map(|i| limit * random(case + 3 * i)).collect();
+                let (mut state, mut force) = (begun.clone(), vec![0.0; directions + 1]);
+                let springs = law.springs(&before, &after, &mut state, &mut force);
+                let (mut plain, mut other) = (begun.clone(), vec![0.0; directions + 1]);
+                let mut jacobian = ReturnMapJacobian::default();
+                law.return_map(&before, &after, &mut plain, &mut other, Some(&mut jacobian));
+                assert_eq!(springs, jacobian.sticks(), "{case}");
+                taken[usize::from(springs)] += 1;
+                if !springs {
+                    assert_eq!((state, force), (begun, vec![0.0; directions + 1]));
+                    continue;
+                }
+                assert_eq!((state, force), (plain, other), "{case}");
+                let known = spring.get_or_insert_with(|| jacobian.clone());
+                let parts = |j: &ReturnMapJacobian| {
+                    [&j.by_state, &j.by_before, &j.by_after, &j.force_by_state, &j.force_by_after]
+                        .map(Clone::clone)
+                };
+                assert_eq!(parts(known), parts(&jacobian), "{case}");
+            }
+        }
+        assert!(taken.iter().all(|count| *count > 150), "{taken:?}");
+    }
+}

@@ -68,3 +68,72 @@ impl Coulomb {
         Unslipped { value, rate: begun.rate[..rows].iter().map(|rate| k * rate).collect() }
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::contact::{Aft, Closure, HarmonicForce as _, Residual, SlipLoad};
+    use crate::fourier::{Harmonics, SampleTable};
+
+    fn random(seed: usize) -> f64 {
+        let x = (seed as f64 * 12.9898 + 4.1).sin() * 43758.5453;
+        x - x.floor() - 0.5
+    }
+
+    /// What bounds say of a motion samples say as well, and they say it of every small one.
+    #[test]
+    fn bounds_are_those_of_all_instants() {
+        let table = SampleTable::new(Harmonics::new(5, false));
+        let slots = table.harmonics().slots();
+        let residual = Residual::FromRest;
+        let (mut sure, mut missed) = (0, 0);
+        for case in 0..600 {
+            let directions = 1 + case % 2;
+            let normal = (case % 3 > 0).then_some(200.0);
+            let closure = if normal.is_some() && case % 5 == 0 {
+                Closure::Gap(-0.1)
+            } else {
+                Closure::Preload(20.0)
+            };
+            let law = Coulomb::new(directions, 0.4, 150.0, normal, closure).unwrap();
+            let size = 0.01 * (1.0 + (case % 20) as f64);
+            let displacement: Vec<f64> = (0..law.displacements() * slots)
+                .map(|i| size * random(case * 97 + i) / (1.0 + (i % slots) as f64))
+                .collect();
+            let motion = Motion { table: &table, displacement: &displacement, residual };
+            let begun = AssumedStart {
+                displacement: vec![0.0; law.displacements()],
+                state: vec![0.0; directions],
+                rate: vec![0.5; law.displacements() * displacement.len()],
+            };
+            let bounded = law.surely_unslipped(&begun, motion);
+            let instants: Vec<f64> = (0..4096)
+                .flat_map(|n| {
+                    let theta = std::f64::consts::TAU * f64::from(n) / 4096.0;
+                    let series = displacement.chunks_exact(slots);
+                    series.map(|s| table.harmonics().jet(s, theta)[0]).collect::<Vec<_>>()
+                })
+                .collect();
+            let sampled = law.unslipped(&begun, &instants);
+            match (bounded, sampled) {
+                (Some(own), Some(all)) => {
+                    assert_eq!((own.value, own.rate), (all.value, all.rate), "{case}");
+                    sure += 1;
+                }
+                (Some(_), None) => panic!("{case}: it slips"),
+                (None, Some(_)) => {
+                    assert!(size > 0.02, "{case}: so little");
+                    missed += 1;
+                }
+                (None, None) => {
+                    let aft = Aft::new(Box::new(law), 128).unwrap();
+                    let mut load = SlipLoad::default();
+                    aft.slip_load(motion, false, &mut load);
+                    assert!(load.active, "{case}");
+                }
+            }
+        }
+        assert!(sure > 150 && missed < sure, "{sure} {missed}");
+    }
+}
