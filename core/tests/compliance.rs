@@ -219,14 +219,8 @@ fn frequencies_without_contacts_follow_from_the_stuck_modes() {
         1 => -900.0,
         _ => 0.0,
     });
-    let mut light = held.mass().to_owned();
-    (0..200).for_each(|i| (light[(7, i)], light[(i, 7)]) = (0.0, 0.0));
-    for (name, mass, stiffness) in [
-        ("held", held.mass(), held.stiffness()),
-        ("loose", held.mass(), loose.as_ref()),
-        ("massless", light.as_ref(), held.stiffness()),
-    ] {
-        let structure = Structure::new(mass, none.as_ref(), stiffness).unwrap();
+    for (name, stiffness) in [("held", held.stiffness()), ("loose", loose.as_ref())] {
+        let structure = Structure::new(held.mass(), none.as_ref(), stiffness).unwrap();
         let (modal, _) = compliance(&structure, &ports).unwrap();
         let direct = DirectCompliance::new(&structure, &ports).unwrap();
         let lowest = modal.lowest_frequencies().unwrap();
@@ -241,10 +235,9 @@ fn frequencies_without_contacts_follow_from_the_stuck_modes() {
         assert!(close, "{name}: {} {first}", lowest[1]);
         let (own, all) = (modal.free_frequencies(), direct.free_frequencies());
         assert_eq!(own.len(), all.len(), "{name}");
-        let highest = all.iter().take(199).fold(0.0_f64, |m, w| m.max(w * w));
+        let highest = all[199] * all[199];
         for (a, b) in own.iter().zip(all) {
-            let error = (a * a - b * b).abs();
-            assert!(error <= 1e-10 * highest.max(b * b), "{name}: {a} {b}");
+            assert!((a * a - b * b).abs() <= 1e-12 * highest, "{name}: {a} {b}");
         }
     }
 }
