@@ -153,9 +153,10 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
         let (count, size) = (self.law.displacements(), self.law.state_size());
         let (stiffness, state_stiffness) = (self.law.stiffness(), self.law.state_stiffness());
         let departs = |step: &Step| {
-            !step.springs
-                && !(is_elastic(&step.jacobian, &state_stiffness)
-                    && follows(&step.jacobian, &stiffness, &state_stiffness))
+            let stays = step.springs
+                || (is_elastic(&step.jacobian, &state_stiffness)
+                    && follows(&step.jacobian, &stiffness, &state_stiffness));
+            !stays
         };
         let mut step = self.start(samples, begun);
         let mut round = Round {

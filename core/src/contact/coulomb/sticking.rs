@@ -121,7 +121,7 @@ mod tests {
                     assert_eq!((own.value, own.rate), (all.value, all.rate), "{case}");
                     sure += 1;
                 }
-                (Some(_), None) => panic!("{case}: it slips"),
+                (Some(_), None) => unreachable!("{case}: it slips"),
                 (None, Some(_)) => {
                     assert!(size > 0.02, "{case}: so little");
                     missed += 1;
