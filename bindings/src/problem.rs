@@ -68,7 +68,8 @@ impl Problem {
         self.model.is_biased()
     }
 
-    /// Builds the problem from matrices, contacts `(law, rows, parameters)` and forces
+    /// Builds the problem from matrices, an iterable of contacts `(law, rows, parameters)`, which are many
+    /// and not kept, and forces
     /// `(harmonic, amplitude per DOF)`; `proportional` says that a law made the damping, one that
     /// couples none of the modes without contacts.
     #[new]
@@ -77,15 +78,16 @@ impl Problem {
         mass: Array2<'_, f64>,
         damping: Array2<'_, f64>,
         stiffness: Array2<'_, f64>,
-        contacts: Vec<ContactSpec<'_>>,
+        contacts: &Bound<'_, PyAny>,
         forces: Forces<'_>,
         proportional: bool,
     ) -> PyResult<Self> {
         let (mass, damping, stiffness) = (matrix(&mass), matrix(&damping), matrix(&stiffness));
-        let contact = |(name, rows, given): ContactSpec<'_>| {
+        let contact = |given: PyResult<Bound<'_, PyAny>>| {
+            let (name, rows, given): ContactSpec<'_> = given?.extract()?;
             Ok(Contact { law: law_of(&name, &given)?, rows: matrix(&rows) })
         };
-        let contacts = contacts.into_iter().map(contact).collect::<PyResult<Vec<_>>>()?;
+        let contacts = contacts.try_iter()?.map(contact).collect::<PyResult<Vec<_>>>()?;
         let loads = harmonic_loads(forces);
         Self::of(py, move || {
             let structure = Structure::of(mass, damping, stiffness)?;

@@ -209,6 +209,39 @@ fn chains_without_damping_or_support_are_seen_by_their_modes() {
     assert_eq!(compliance(&loose, &ports).unwrap().1, "stuck modes");
 }
 
+#[test]
+fn frequencies_without_contacts_follow_from_the_stuck_modes() {
+    let (held, ports) = chain(200, "mass");
+    let none = Mat::zeros(200, 200);
+    let loose = Mat::from_fn(200, 200, |i, j| match i.abs_diff(j) {
+        0 if i == 0 || i == 199 => 900.0,
+        0 => 1800.0,
+        1 => -900.0,
+        _ => 0.0,
+    });
+    for (name, stiffness) in [("held", held.stiffness()), ("loose", loose.as_ref())] {
+        let structure = Structure::new(held.mass(), none.as_ref(), stiffness).unwrap();
+        let (modal, _) = compliance(&structure, &ports).unwrap();
+        let direct = DirectCompliance::new(&structure, &ports).unwrap();
+        let lowest = modal.lowest_frequencies().unwrap();
+        assert_eq!(lowest[0], modal.stuck_frequencies()[0], "{name}");
+        let first = direct.free_frequencies()[0];
+        // A body that only contacts hold is known by it.
+        let close = if name == "loose" {
+            lowest[1] < 1e-5 * lowest[0]
+        } else {
+            (lowest[1] / first - 1.0).abs() < 1e-4
+        };
+        assert!(close, "{name}: {} {first}", lowest[1]);
+        let (own, all) = (modal.free_frequencies(), direct.free_frequencies());
+        assert_eq!(own.len(), all.len(), "{name}");
+        let highest = all[199] * all[199];
+        for (a, b) in own.iter().zip(all) {
+            assert!((a * a - b * b).abs() <= 1e-12 * highest, "{name}: {a} {b}");
+        }
+    }
+}
+
 fn compare(name: &str, got: &[c64], want: &[c64]) {
     let scale = want.iter().map(|z| z.norm()).fold(0.0, f64::max);
     for (a, b) in got.iter().zip(want) {

@@ -1,6 +1,6 @@
 """The compiled mathematics: arrays in, arrays out."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, TypedDict
 
 import numpy as np
@@ -33,7 +33,7 @@ class Problem:
         mass: Float,
         damping: Float,
         stiffness: Float,
-        contacts: Sequence[Contact],
+        contacts: Iterable[Contact],
         forces: Sequence[tuple[int, Complex]],
         proportional: bool,
     ) -> None: ...

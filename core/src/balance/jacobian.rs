@@ -78,12 +78,15 @@ impl Condensed<'_> {
     /// Assembles and factors the equations of a Newton step.
     fn factorise(&mut self) {
         let harmonics = self.table.harmonics();
-        let active = self.active_points();
+        let (active, mut yielding) = (self.active_points(), Vec::new());
+        if matches!(self.linear, Linear::Modal(_)) {
+            yielding = self.tangents().yielding_points();
+        }
         let compliance = self.model.compliance();
         self.factor = match (&mut self.linear, compliance.ring()) {
             (Linear::Modal(orders), _) => {
                 let rough = (!self.fine).then_some(&*orders);
-                Some(Factor::Krylov(KrylovNewton::new(compliance, &active, rough)))
+                Some(Factor::Krylov(KrylovNewton::new(compliance, [&active, &yielding], rough)))
             }
             (Linear::Ring { orders, .. }, Some(ring)) => {
                 Some(if RingNewton::suits(ring, harmonics.slots(), active.len()) {
@@ -107,10 +110,9 @@ impl Condensed<'_> {
         };
     }
 
-    /// Solves the equations linearised in the displacements and a parameter of a size, with one more
-    /// equation whose coefficients are `row`, as `right` says; `rate` is the rate of change of the residual
-    /// with the parameter, sign reversed. The sign is that of the determinant, or 0 where no matrix is
-    /// formed.
+    /// Solves the equations linearised in the displacements and a parameter of a size, with one more equation
+    /// of the coefficients `row`, as `right` says; `rate` is the rate of change of the residual with the
+    /// parameter, sign reversed. The sign is that of the determinant, or 0 where no matrix is formed.
     pub(super) fn solve_bordered(
         &mut self,
         (rate, size): (&[f64], f64),
@@ -131,7 +133,8 @@ impl Condensed<'_> {
             }
             Linear::Modal(orders) => {
                 let modes = self.model.compliance().contact_modes()?;
-                let krylov = self.krylov_newton();
+                let points = [&self.active_points()[..], &[]];
+                let krylov = KrylovNewton::new(self.model.compliance(), points, None);
                 let (step, count) =
                     krylov.solve_bordered(self.products(modes, orders), &border, right)?;
                 self.profile.products += count;
@@ -141,11 +144,6 @@ impl Condensed<'_> {
         };
         self.profile.linear_solve += start.elapsed();
         step.iter().all(|s| s.is_finite()).then_some((step, sign))
-    }
-
-    /// The contacts that yield, as products with the modes see them.
-    fn krylov_newton(&self) -> KrylovNewton {
-        KrylovNewton::new(self.model.compliance(), &self.active_points(), None)
     }
 
     /// Points of the contacts that yield.

@@ -6,10 +6,9 @@
 //! as the error of the solution is judged.
 
 use super::slip_jacobian::{Border, Loads};
-use crate::solve::{gmres, norm, KrylovSettings};
-use crate::structure::{Compliance, ContactCoordinates, ContactShapes, ModalOrders};
-use faer::linalg::matmul::matmul;
-use faer::{Accum, Mat, MatRef, Par};
+use crate::solve::{dot, gmres, norm, KrylovSettings};
+use crate::structure::{Compliance, ContactCoordinates, ContactShapes, ModalOrders, QuasiStatic};
+use faer::{Mat, MatRef};
 
 /// What a direction may leave of the residual: Newton's method takes it from there.
 const FORCING: f64 = 1e-3;
@@ -23,9 +22,6 @@ const MOST_PRODUCTS: usize = 400;
 const USEFUL: f64 = 0.5;
 /// Tolerance of what damping couples within a product, against that of the whole.
 const WITHIN: f64 = 1e-2;
-
-/// Sums of a scalar product.
-const SIDE_BY_SIDE: usize = 8;
 
 /// What a product with `I − G ∂Q` is made of.
 #[derive(Clone, Copy)]
@@ -43,28 +39,76 @@ pub(super) struct Products<'a> {
 /// The contacts that slip.
 pub(super) struct KrylovNewton {
     points: Vec<usize>,
-    /// Ψ of them.
-    shapes: ContactShapes,
-    /// Flexibility between them of modes that are none of these, as they follow their loads at once.
-    flexibility: Option<Mat<f64>>,
+    answers: Answers,
+}
+
+/// What answers the loads on them.
+enum Answers {
+    /// All modes, by Ψ of the points.
+    Whole(ContactShapes),
+    /// The slowest ones, and the flexibility of the others.
+    Rough(QuasiStatic),
+}
+
+impl Answers {
+    /// Displacements of the points by loads on them; `tolerance` is that of what damping couples.
+    fn of_points(&self, of: Products<'_>, load: MatRef<'_, f64>, tolerance: f64) -> Mat<f64> {
+        match self {
+            Self::Rough(rough) => rough.answer(of.orders, load),
+            Self::Whole(shapes) => {
+                let mut motion = shapes.excite(load);
+                of.modes.answer(of.orders, &mut motion, tolerance);
+                shapes.displace(motion.as_ref())
+            }
+        }
+    }
+
+    /// The same of all points there are.
+    fn of_all(
+        &self,
+        of: Products<'_>,
+        points: &[usize],
+        load: MatRef<'_, f64>,
+        tolerance: f64,
+    ) -> Mat<f64> {
+        let mut motion = match self {
+            Self::Whole(shapes) => shapes.excite(load),
+            Self::Rough(_) => {
+                let mut whole = Mat::zeros(load.nrows(), of.modes.contacts());
+                for (own, &point) in load.col_iter().zip(points) {
+                    whole.col_mut(point).copy_from(own);
+                }
+                if let Some(rough) = of.modes.quasi_static(of.orders) {
+                    return rough.answer(of.orders, whole.as_ref());
+                }
+                of.modes.excite(whole.as_ref())
+            }
+        };
+        of.modes.answer(of.orders, &mut motion, tolerance);
+        of.modes.displace(motion.as_ref())
+    }
 }
 
 impl KrylovNewton {
-    /// Of the points of contacts with a tangent; with the harmonics in `rough`, fast modes follow their
-    /// loads at once: directions are corrected by what follows them.
+    /// Of the points of contacts with a tangent, and those of them that yield; with the harmonics in `rough`,
+    /// fast modes follow their loads at once: directions are corrected by what follows them.
     pub(super) fn new(
         compliance: &dyn Compliance,
-        active: &[usize],
+        [active, yielding]: [&[usize]; 2],
         rough: Option<&ModalOrders>,
     ) -> Self {
         let points = active.to_vec();
         let Some(modes) = compliance.contact_modes() else {
-            return Self { points, shapes: ContactShapes::default(), flexibility: None };
+            return Self { points, answers: Answers::Whole(ContactShapes::default()) };
         };
-        match rough.and_then(|orders| modes.quasi_static(orders, active)) {
-            Some((shapes, flexibility)) => Self { points, shapes, flexibility: Some(flexibility) },
-            None => Self { points, shapes: modes.part(active), flexibility: None },
-        }
+        let answers = match rough.and_then(|orders| modes.quasi_static(orders)) {
+            Some(rough) => {
+                let places = yielding.iter().filter_map(|point| active.binary_search(point).ok());
+                Answers::Rough(rough.part(active, places.collect()))
+            }
+            None => Answers::Whole(modes.part(active)),
+        };
+        Self { points, answers }
     }
 
     /// Newton's direction, and the number of products that it took; nothing if there is none, or the
@@ -75,7 +119,7 @@ impl KrylovNewton {
         rhs: &[f64],
         step: &mut [f64],
     ) -> Option<usize> {
-        let Products { modes, loads: Loads { slots, .. }, .. } = products;
+        let Products { loads: Loads { slots, .. }, .. } = products;
         let tolerance = if products.fine { FINE } else { FORCING };
         let mut load = vec![0.0; self.points.len() * slots];
         let sizes: Vec<f64> = self.points.iter().map(|&point| products.sizes[point]).collect();
@@ -90,13 +134,8 @@ impl KrylovNewton {
         let product = |v: &[f64], out: &mut [f64]| {
             moved.copy_from_slice(v);
             scaled(&mut moved, &|size| size);
-            let motion = self.answered(products, &moved, WITHIN * tolerance, &mut load);
-            let mut motion = self.shapes.displace(motion.as_ref());
-            if let Some(flexibility) = &self.flexibility {
-                let load = MatRef::from_column_major_slice(&load, slots, self.points.len());
-                let flexibility = flexibility.as_ref();
-                matmul(motion.as_mut(), Accum::Add, load, flexibility, 1.0, Par::Seq);
-            }
+            let load = self.loaded(products.loads, &moved, &mut load);
+            let motion = self.answers.of_points(products, load, WITHIN * tolerance);
             for (out, own) in out.chunks_exact_mut(slots).zip(motion.col_iter()) {
                 out.iter_mut().zip(own.iter()).for_each(|(out, u)| *out = *u);
             }
@@ -115,8 +154,8 @@ impl KrylovNewton {
         // The others follow from step = rhs + G ∂Q step.
         step.copy_from_slice(rhs);
         if self.points.len() * slots < step.len() {
-            let motion = self.answered_by_all(products, &solution, WITHIN * tolerance, &mut load);
-            let motion = modes.displace(motion.as_ref());
+            let load = self.loaded(products.loads, &solution, &mut load);
+            let motion = self.answers.of_all(products, &self.points, load, WITHIN * tolerance);
             for (step, own) in step.chunks_exact_mut(slots).zip(motion.col_iter()) {
                 step.iter_mut().zip(own.iter()).for_each(|(step, u)| *step += u);
             }
@@ -136,7 +175,7 @@ impl KrylovNewton {
         border: &Border<'_>,
         right: &[f64],
     ) -> Option<(Vec<f64>, usize)> {
-        let Products { modes, loads: Loads { slots, .. }, .. } = products;
+        let Products { loads: Loads { slots, .. }, .. } = products;
         let count = border.rate.len();
         let (size, mut load) = (self.points.len() * slots, vec![0.0; self.points.len() * slots]);
         let sizes = self.points.iter().flat_map(|&point| vec![products.sizes[point]; slots]);
@@ -159,8 +198,9 @@ impl KrylovNewton {
         let mut moved = vec![0.0; size];
         let product = |v: &[f64], out: &mut [f64]| {
             moved.iter_mut().zip(v).zip(&sizes).for_each(|((m, v), size)| *m = v * size);
-            let motion = self.answered(products, &moved, WITHIN * BORDERED, &mut load);
-            let answer = series(&modes.displace(motion.as_ref()));
+            let load = self.loaded(products.loads, &moved, &mut load);
+            let answer = self.answers.of_all(products, &self.points, load, WITHIN * BORDERED);
+            let answer = series(&answer);
             let own = divided(self.of_points(&answer, slots));
             let ahead = v[size];
             for (((out, v), own), c) in out.iter_mut().zip(&v[..size]).zip(own).zip(&column) {
@@ -177,8 +217,9 @@ impl KrylovNewton {
         }
         let ahead = solution[size] * unit;
         solution.iter_mut().zip(&sizes).for_each(|(x, size)| *x *= size);
-        let motion = self.answered(products, &solution[..size], WITHIN * BORDERED, &mut load);
-        let answer = series(&modes.displace(motion.as_ref()));
+        let load = self.loaded(products.loads, &solution[..size], &mut load);
+        let answer = self.answers.of_all(products, &self.points, load, WITHIN * BORDERED);
+        let answer = series(&answer);
         let linear = right[..count].iter().zip(border.rate).map(|(r, rate)| r + ahead * rate);
         let mut step: Vec<f64> =
             linear.zip(answer).map(|(linear, answer)| linear + answer).collect();
@@ -187,45 +228,6 @@ impl KrylovNewton {
         }
         step.push(ahead);
         Some((step, report.products))
-    }
-
-    /// [`KrylovNewton::answered`], of all modes.
-    fn answered_by_all(
-        &self,
-        products: Products<'_>,
-        step: &[f64],
-        tolerance: f64,
-        load: &mut [f64],
-    ) -> Mat<f64> {
-        if self.flexibility.is_none() {
-            return self.answered(products, step, tolerance, load);
-        }
-        load.fill(0.0);
-        self.add_tangents(products.loads, step, load);
-        let (modes, slots) = (products.modes, products.loads.slots);
-        let mut whole = Mat::zeros(slots, modes.contacts());
-        for (own, &point) in load.chunks_exact(slots).zip(&self.points) {
-            whole.col_as_slice_mut(point).copy_from_slice(own);
-        }
-        let mut motion = modes.excite(whole.as_ref());
-        modes.answer(products.orders, &mut motion, tolerance);
-        motion
-    }
-
-    /// Modal coordinates of the motion that the tangents answer a step of the active points with.
-    fn answered(
-        &self,
-        products: Products<'_>,
-        step: &[f64],
-        tolerance: f64,
-        load: &mut [f64],
-    ) -> Mat<f64> {
-        load.fill(0.0);
-        self.add_tangents(products.loads, step, load);
-        let load = MatRef::from_column_major_slice(load, products.loads.slots, self.points.len());
-        let mut motion = self.shapes.excite(load);
-        products.modes.answer(products.orders, &mut motion, tolerance);
-        motion
     }
 
     /// The series of the active points among those of all.
@@ -237,30 +239,22 @@ impl KrylovNewton {
             .collect()
     }
 
-    /// `out += ∂Q v` of the active points.
-    fn add_tangents(&self, loads: Loads<'_>, v: &[f64], out: &mut [f64]) {
-        let mut first = 0;
-        for load in loads.loads.iter().filter(|load| load.active) {
-            let size = load.value.len();
-            let rows = load.tangent.chunks_exact(size).zip(&mut out[first..first + size]);
-            for (row, out) in rows {
-                *out += dot(row, &v[first..first + size]);
+    /// `∂Q v` of the active points, slots × points, in the room for it.
+    fn loaded<'b>(&self, loads: Loads<'_>, v: &[f64], out: &'b mut [f64]) -> MatRef<'b, f64> {
+        let product = || {
+            let mut first = 0;
+            for load in loads.loads.iter().filter(|load| load.active) {
+                let size = load.value.len();
+                let rows = load.tangent.chunks_exact(size).zip(&mut out[first..first + size]);
+                for (row, out) in rows {
+                    *out = dot(row, &v[first..first + size]);
+                }
+                first += size;
             }
-            first += size;
-        }
-        debug_assert_eq!(first, self.points.len() * loads.slots);
+        };
+        pulp::Arch::new().dispatch(product);
+        MatRef::from_column_major_slice(out, loads.slots, self.points.len())
     }
-}
-
-/// Scalar product, by sums that go through the processor side by side.
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let (mut a, mut b) = (a.chunks_exact(SIDE_BY_SIDE), b.chunks_exact(SIDE_BY_SIDE));
-    let mut sums = [0.0; SIDE_BY_SIDE];
-    for (a, b) in (&mut a).zip(&mut b) {
-        sums.iter_mut().zip(a.iter().zip(b)).for_each(|(sum, (a, b))| *sum += a * b);
-    }
-    let rest = a.remainder().iter().zip(b.remainder());
-    sums.iter().sum::<f64>() + rest.map(|(a, b)| a * b).sum::<f64>()
 }
 
 /// Series of all points, one after the other.

@@ -79,6 +79,11 @@ impl<'a> Loads<'a> {
         all.filter(|one| one.scale != 0.0).collect()
     }
 
+    /// The points that yield.
+    pub(super) fn yielding_points(self) -> Vec<usize> {
+        self.yielding().iter().map(|one| one.point).collect()
+    }
+
     /// `∂Q x` at the points that yield, each divided by its scale.
     fn product(self, yielding: &[Yielding], x: &[f64], out: &mut [f64]) {
         for (one, out) in yielding.iter().zip(out.chunks_exact_mut(self.slots)) {

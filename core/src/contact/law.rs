@@ -136,6 +136,19 @@ pub trait ContactLaw: Send + Sync + std::fmt::Debug {
         jacobian: Option<&mut ReturnMapJacobian>,
     );
 
+    /// Takes a step that the stuck spring takes, from its begin to its end, and says so; nothing is taken
+    /// of any other. The derivative of all these steps is the same, that of the spring; a law without this
+    /// shortcut takes every step by [`Self::return_map`].
+    fn springs(
+        &self,
+        _before: &[f64],
+        _after: &[f64],
+        _state: &mut [f64],
+        _force: &mut [f64],
+    ) -> bool {
+        false
+    }
+
     /// The displacements and the state from which a motion begins that has no history but its loads':
     /// all zero unless the law says otherwise.
     fn beginning(&self) -> (Vec<f64>, Vec<f64>) {
@@ -153,6 +166,11 @@ pub trait ContactLaw: Send + Sync + std::fmt::Debug {
     /// instant after instant, on which nothing slips or opens. Nothing if something may; a law that
     /// cannot tell is marched.
     fn unslipped(&self, _begun: &AssumedStart, _displacement: &[f64]) -> Option<Unslipped> {
+        None
+    }
+
+    /// The same as far as the amplitudes of a motion alone show it, without any instant.
+    fn surely_unslipped(&self, _begun: &AssumedStart, _motion: Motion<'_>) -> Option<Unslipped> {
         None
     }
 

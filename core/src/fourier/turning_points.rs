@@ -83,10 +83,10 @@ impl SampleTable {
         Self { harmonics, quarter, stride, cos, sin, instants: Instants::default() }
     }
 
-    /// The basis at the first `count` of `samples` equidistant instants of a period, instant after
-    /// instant.
+    /// The basis at the first `count` of `samples` equidistant instants of a period: instant after
+    /// instant, and function after function.
     #[must_use]
-    pub fn basis(&self, samples: usize, count: usize) -> Arc<[f64]> {
+    pub fn basis(&self, samples: usize, count: usize) -> [Arc<[f64]>; 2] {
         self.instants.basis(&self.harmonics, samples, count)
     }
 

@@ -1,7 +1,10 @@
 //! Eigenpairs of Hermitian matrices, whatever the unit of their entries.
 
+use faer::diag::Diag;
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::evd;
 use faer::traits::ComplexField;
-use faer::{Mat, MatRef, Scale, Side};
+use faer::{Mat, MatRef, Par, Scale, Side};
 
 /// Eigenvalues, ascending, and orthonormal eigenvectors of a Hermitian matrix, of which the lower
 /// triangle is read; `None` if the iteration does not end.
@@ -13,11 +16,35 @@ use faer::{Mat, MatRef, Scale, Side};
 pub fn hermitian_eigen<T: ComplexField<Real = f64>>(
     matrix: MatRef<'_, T>,
 ) -> Option<(Vec<f64>, Mat<T>)> {
-    let unit = unit_of(matrix);
-    let eigen = (Scale(T::from_f64_impl(unit.recip())) * matrix).self_adjoint_eigen(Side::Lower);
-    let eigen = eigen.ok()?;
-    let values = (0..matrix.nrows()).map(|j| unit * T::real_part_impl(&eigen.S()[j])).collect();
-    Some((values, eigen.U().to_owned()))
+    hermitian_eigen_of(matrix.to_owned())
+}
+
+/// The same of a matrix that is not needed any more: with many rows it is memory that one runs out of.
+pub fn hermitian_eigen_of<T: ComplexField<Real = f64>>(
+    mut matrix: Mat<T>,
+) -> Option<(Vec<f64>, Mat<T>)> {
+    let unit = unit_of(matrix.as_ref());
+    matrix *= Scale(T::from_f64_impl(unit.recip()));
+    let size = matrix.nrows();
+    let (mut vectors, mut values) = (Mat::zeros(size, size), Diag::zeros(size));
+    let need = evd::self_adjoint_evd_scratch::<T>(
+        size,
+        evd::ComputeEigenvectors::Yes,
+        Par::Seq,
+        Default::default(),
+    );
+    let mut room = MemBuffer::try_new(need).ok()?;
+    let made = evd::self_adjoint_evd(
+        matrix.as_ref(),
+        values.as_mut(),
+        Some(vectors.as_mut()),
+        Par::Seq,
+        MemStack::new(&mut room),
+        Default::default(),
+    );
+    made.ok()?;
+    let values = (0..size).map(|j| unit * T::real_part_impl(&values[j])).collect();
+    Some((values, vectors))
 }
 
 /// Eigenvalues alone; see [`hermitian_eigen`].

@@ -1,6 +1,7 @@
 //! Coordinates in which a structure with many contacts answers forces, without a receptance.
 
 use super::contact_shapes::ContactShapes;
+use super::quasi_static::QuasiStatic;
 use crate::Error;
 use faer::linalg::solvers::Solve as _;
 use faer::sparse::linalg::solvers::Lu;
@@ -31,14 +32,10 @@ pub trait ContactCoordinates: Send + Sync {
     /// The shapes of some contacts.
     fn part(&self, contacts: &[usize]) -> ContactShapes;
 
-    /// Shapes of some contacts in the slowest coordinates, and the flexibility of all others between these
-    /// contacts; nothing where the others do not follow their loads at once. What the two answer
-    /// differs from the whole by some thousandths of that flexibility.
-    fn quasi_static(
-        &self,
-        _at: &ModalOrders,
-        _contacts: &[usize],
-    ) -> Option<(ContactShapes, Mat<f64>)> {
+    /// Answers of the slowest coordinates and of the flexibility of all others; nothing where the others do
+    /// not follow their loads at once. They differ from those of the whole by some thousandths of that
+    /// flexibility.
+    fn quasi_static(&self, _at: &ModalOrders) -> Option<&QuasiStatic> {
         None
     }
 

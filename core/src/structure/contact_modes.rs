@@ -8,8 +8,11 @@ use super::flexibility::RIGID_BODY;
 use super::massless::StuckModes;
 use super::modes::{resonates, RealModes};
 use super::ports::{HarmonicLoad, Ports};
+use super::quasi_static::QuasiStatic;
+use crate::solve::hermitian_eigenvalues;
 use crate::Error;
-use faer::{c64, Mat, MatRef};
+use faer::linalg::matmul::matmul;
+use faer::{c64, Accum, Mat, MatRef, Par};
 use std::sync::OnceLock;
 
 /// Modes of the stuck structure at its contacts. Series of several harmonics are matrices, slots ×
@@ -24,8 +27,8 @@ pub struct ContactModes {
     moving: Vec<bool>,
     /// Whether the damping couples a mode to others.
     coupled: Vec<bool>,
-    /// Flexibility of all but the slowest modes at the contacts [m/N].
-    pub(super) flexibility: OnceLock<Mat<f64>>,
+    /// What they answer roughly, if it was asked for.
+    pub(super) quasi_static: OnceLock<QuasiStatic>,
     /// Modal mass: 1, or 0 of what DOFs without mass add.
     pub(super) inertia: Vec<f64>,
     /// Modal stiffness.
@@ -110,7 +113,7 @@ impl ContactModes {
             contacts,
             moving,
             coupled,
-            flexibility: OnceLock::new(),
+            quasi_static: OnceLock::new(),
             inertia,
             omega_squared,
             loads: ports.loads.iter().map(project).collect(),
@@ -170,6 +173,22 @@ impl ContactModes {
 
     pub(super) fn load(&self, harmonic: usize) -> Option<&[c64]> {
         self.loads.iter().find(|(order, _)| *order == harmonic).map(|(_, load)| load.as_slice())
+    }
+
+    /// Squared natural frequencies with springs between contacts taken away, ascending: the modes, which have
+    /// unit mass, know the whole structure.
+    pub(super) fn squared_without(&self, springs: &[(usize, usize, f64)]) -> Vec<f64> {
+        let shapes = self.shapes();
+        let mut carried: Mat<f64> = Mat::zeros(shapes.nrows(), shapes.ncols());
+        for &(i, j, stiffness) in springs {
+            let own = carried.col_as_slice_mut(j).iter_mut().zip(shapes.col(i).iter());
+            own.for_each(|(carried, psi)| *carried += stiffness * psi);
+        }
+        let size = self.modes();
+        let mut whole =
+            Mat::from_fn(size, size, |i, j| if i == j { self.omega_squared[i] } else { 0.0 });
+        matmul(whole.as_mut(), Accum::Add, shapes, carried.transpose(), -1.0, Par::Seq);
+        hermitian_eigenvalues(whole.as_ref()).unwrap_or_default()
     }
 
     /// Number of DOFs.

@@ -1,6 +1,7 @@
 //! What coordinates displace at contacts, and what loads on contacts are on coordinates.
 
 use faer::linalg::matmul::matmul;
+use faer::traits::RealField;
 use faer::{Accum, Mat, MatRef, Par};
 
 /// Contacts with a load that are gathered at once: their shapes stay in the cache.
@@ -93,14 +94,15 @@ impl SparseRows {
 
 /// Modal forces of loads, `q Ψ`; `contacts` are Ψᵀ of the contacts that have some. Those without a load
 /// are passed over.
-pub(super) fn excite(contacts: MatRef<'_, f64>, load: MatRef<'_, f64>) -> Mat<f64> {
-    let loaded = |j: &usize| load.col(*j).iter().any(|q| *q != 0.0);
+pub(super) fn excite<T: RealField + Copy>(contacts: MatRef<'_, T>, load: MatRef<'_, T>) -> Mat<T> {
+    let (zero, one) = (T::zero_impl(), T::one_impl());
+    let loaded = |j: &usize| load.col(*j).iter().any(|q| *q != zero);
     let loaded: Vec<usize> = (0..load.ncols()).filter(loaded).collect();
     // Tall columns, one behind the other, go through the processor twice as fast as rows.
     let mut forces = Mat::zeros(contacts.nrows(), load.nrows());
     if loaded.len() == load.ncols() {
         let par = Par::Seq;
-        matmul(forces.as_mut(), Accum::Replace, contacts, load.transpose(), 1.0, par);
+        matmul(forces.as_mut(), Accum::Replace, contacts, load.transpose(), one, par);
         return forces.transpose().to_owned();
     }
     let mut panel = Mat::zeros(contacts.nrows(), PANEL.min(loaded.len()));
@@ -108,20 +110,27 @@ pub(super) fn excite(contacts: MatRef<'_, f64>, load: MatRef<'_, f64>) -> Mat<f6
         gather(contacts, own, &mut panel);
         let loads = Mat::from_fn(own.len(), load.nrows(), |j, i| load[(i, own[j])]);
         let panel = panel.as_ref().subcols(0, own.len());
-        matmul(forces.as_mut(), Accum::Add, panel, loads.as_ref(), 1.0, Par::Seq);
+        matmul(forces.as_mut(), Accum::Add, panel, loads.as_ref(), one, Par::Seq);
     }
     forces.transpose().to_owned()
 }
 
 /// Displacements of modal coordinates at contacts, `y Ψᵀ`.
-pub(super) fn displace(contacts: MatRef<'_, f64>, coordinates: MatRef<'_, f64>) -> Mat<f64> {
+pub(super) fn displace<T: RealField + Copy>(
+    contacts: MatRef<'_, T>,
+    coordinates: MatRef<'_, T>,
+) -> Mat<T> {
     let mut motion = Mat::zeros(coordinates.nrows(), contacts.ncols());
-    matmul(motion.as_mut(), Accum::Replace, coordinates, contacts, 1.0, Par::Seq);
+    matmul(motion.as_mut(), Accum::Replace, coordinates, contacts, T::one_impl(), Par::Seq);
     motion
 }
 
 /// Copies some columns side by side into a matrix that is no narrower.
-pub(super) fn gather(from: MatRef<'_, f64>, columns: &[usize], into: &mut Mat<f64>) {
+pub(super) fn gather<T: RealField + Copy>(
+    from: MatRef<'_, T>,
+    columns: &[usize],
+    into: &mut Mat<T>,
+) {
     for (at, &j) in columns.iter().enumerate() {
         match from.col(j).try_as_col_major() {
             Some(column) => into.col_as_slice_mut(at).copy_from_slice(column.as_slice()),

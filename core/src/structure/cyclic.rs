@@ -153,7 +153,7 @@ impl CyclicStructure {
         let rows = wave_rows(own, next, delta);
         let restrained = restrained(&self.stiffness.wave(delta), &rows, stiffness);
         let mass = self.mass.wave(delta);
-        let stuck = StuckModes::new(mass.as_ref(), restrained.as_ref(), &self.massless)?;
+        let stuck = StuckModes::new(mass.as_ref(), restrained, &self.massless)?;
         Ok(stuck.modes.frequencies())
     }
 }
@@ -266,7 +266,7 @@ impl CyclicCompliance {
         let (mass, damping) = (structure.mass.wave(delta), structure.damping.wave(delta));
         let free_stiffness = structure.stiffness.wave(delta);
         let stuck_stiffness = restrained(&free_stiffness, &rows, self.ports.stiffness.as_ref());
-        let held = StuckModes::new(mass.as_ref(), stuck_stiffness.as_ref(), &structure.massless)?;
+        let held = StuckModes::new(mass.as_ref(), stuck_stiffness.clone(), &structure.massless)?;
         let StuckModes { modes: stuck, statics } = held;
         let free = modes(mass.as_ref(), free_stiffness.as_ref())?;
         let (stuck_frequencies, free_frequencies) = (stuck.frequencies(), free.frequencies());

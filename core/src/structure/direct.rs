@@ -32,7 +32,7 @@ impl DirectCompliance {
         let restrained =
             structure.restrained_stiffness(ports.rows.as_ref(), ports.stiffness.as_ref());
         let direct = Self::of(structure, ports, restrained.as_ref());
-        let stuck = structure.modes_at(restrained.as_ref())?.modes.frequencies();
+        let stuck = structure.modes_at(restrained)?.modes.frequencies();
         let free = modes(structure.mass(), structure.stiffness())?.frequencies();
         Ok(direct.with_frequencies(stuck, free))
     }

@@ -1,16 +1,17 @@
 //! Compliance of a structure with many contacts: real modes of the stuck structure, seen from the
-//! contacts, and nothing of the size of the structure beside them. Receptances are formed only for
-//! those who ask.
+//! contacts. Receptances are formed only for those who ask, and so are the natural frequencies without
+//! contacts: the lowest of them, by which a body is known that contacts alone hold, is found by itself.
 
 use super::contact_coordinates::ContactCoordinates;
 use super::contact_modes::ContactModes;
-use super::modes::{squared_frequencies, RealModes};
+use super::modes::{frequencies, lowest_squared, squared_frequencies};
 use super::ports::{forced_harmonics, Ports};
 use super::proportional::follows_mass;
 use super::restraint::store;
 use super::{Compliance, Outline, Quantity, Receptance, Request, Structure};
 use crate::Error;
 use faer::{c64, Mat};
+use std::sync::OnceLock;
 
 /// Contacts from which on a structure is seen in this way whatever its damping is.
 const MANY: usize = 128;
@@ -22,6 +23,11 @@ const EXACT: f64 = 1e-14;
 pub struct InterfaceCompliance {
     modes: ContactModes,
     outline: Outline,
+    /// Contact stiffness, pair by pair of points [N/m].
+    held: Vec<(usize, usize, f64)>,
+    /// Natural frequencies without contacts, and about the lowest of them.
+    free: OnceLock<Vec<f64>>,
+    lowest_free: f64,
 }
 
 impl InterfaceCompliance {
@@ -37,12 +43,9 @@ impl InterfaceCompliance {
         if contacts < if uncoupled { ContactModes::FEWEST } else { MANY } {
             return Ok(None);
         }
-        let omega_squared = squared_frequencies(mass, structure.stiffness())?;
-        let free = RealModes { omega_squared, shapes: Mat::new() }.frequencies();
         let restrained =
             structure.restrained_stiffness(ports.rows.as_ref(), ports.stiffness.as_ref());
-        let stuck = structure.modes_at(restrained.as_ref())?;
-        drop(restrained);
+        let stuck = structure.modes_at(restrained)?;
         let seen = if uncoupled {
             let rate = damping[(0, 0)] / mass[(0, 0)];
             ContactModes::uncoupled(&stuck, &vec![rate; stuck.modes.omega_squared.len()], ports)
@@ -53,7 +56,21 @@ impl InterfaceCompliance {
         let Some(modes) = seen else { return Ok(None) };
         let bandwidth = modes.narrowest_bandwidth();
         let forced = forced_harmonics(&ports.loads);
-        Ok(Some(Self { modes, outline: Outline { stuck, free, bandwidth, forced } }))
+        let beside = stuck.first().map_or(0.0, |lowest| lowest * lowest);
+        let lowest_free = lowest_squared(mass, structure.stiffness(), beside).sqrt();
+        let free = OnceLock::new();
+        if !structure.massless().is_empty() {
+            // They are no part of the modes.
+            let squared = squared_frequencies(mass, structure.stiffness())?;
+            free.get_or_init(|| frequencies(&squared));
+        }
+        let pairs = ports.stiffness.col_iter().enumerate();
+        let pairs = pairs.flat_map(|(j, column)| {
+            column.iter().enumerate().map(move |(i, d)| (i, j, *d)).collect::<Vec<_>>()
+        });
+        let held = pairs.filter(|(_, _, d)| *d != 0.0).collect();
+        let outline = Outline { stuck, free: Vec::new(), bandwidth, forced };
+        Ok(Some(Self { modes, outline, held, free, lowest_free }))
     }
 }
 
@@ -83,6 +100,14 @@ impl Compliance for InterfaceCompliance {
 
     fn contact_modes(&self) -> Option<&dyn ContactCoordinates> {
         Some(&self.modes)
+    }
+
+    fn lowest_frequencies(&self) -> Option<[f64; 2]> {
+        Some([*self.outline.stuck.first()?, self.lowest_free])
+    }
+
+    fn free_frequencies(&self) -> &[f64] {
+        self.free.get_or_init(|| frequencies(&self.modes.squared_without(&self.held)))
     }
 
     fn require_grounded(&self) -> Result<(), Error> {
@@ -149,5 +174,34 @@ impl Compliance for InterfaceCompliance {
         let whole = if self.modes.is_coupled() { modes.powi(3) } else { 0.0 };
         let displacement = modes * (20.0 + 1.5 * (contacts + observed as f64));
         [modes * (20.0 + 0.5 * contacts * contacts) + whole, displacement]
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    /// Setting up takes one eigenproblem, and what a sweep asks for no other.
+    #[test]
+    fn frequencies_without_contacts_are_found_only_when_all_are_asked_for() {
+        let size = 40;
+        let between = |i: usize, j: usize| match i.abs_diff(j) {
+            0 => 2.5,
+            1 => -1.0,
+            _ => 0.0,
+        };
+        let stiffness = Mat::from_fn(size, size, between);
+        let mass = Mat::<f64>::identity(size, size);
+        let damping = faer::Scale(0.1) * &mass;
+        let structure = Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref());
+        let (rows, held) = (mass.clone(), faer::Scale(3.0) * &mass);
+        let ports = Ports { rows, stiffness: held, loads: Vec::new() };
+        let compliance = InterfaceCompliance::new(&structure.unwrap(), &ports).unwrap().unwrap();
+        let [stuck, free] = compliance.lowest_frequencies().unwrap();
+        assert!((stuck * stuck - free * free - 3.0).abs() < 1e-5);
+        assert!(compliance.free.get().is_none());
+        let all = compliance.free_frequencies();
+        assert!((all[0] / free - 1.0).abs() < 1e-5 && all.len() == size);
     }
 }

@@ -5,7 +5,7 @@
 //! modal sum (Guyan 1965; exact here). The stuck contacts belong to K. A motion in time needs inertia: there
 //! a substitute moves them so much faster than all others that it changes nothing one looks at.
 
-use super::modes::{modes, Modes};
+use super::modes::{modes_of, Modes};
 use crate::Error;
 use faer::linalg::solvers::Solve as _;
 use faer::linalg::triangular_solve::solve_upper_triangular_in_place;
@@ -61,7 +61,7 @@ impl<T: ComplexField<Real = f64>> StuckModes<T> {
     /// As [`modes`].
     pub(super) fn new(
         mass: MatRef<'_, T>,
-        stiffness: MatRef<'_, T>,
+        stiffness: Mat<T>,
         massless: &[usize],
     ) -> Result<Self, Error> {
         let size = mass.nrows();
@@ -70,24 +70,24 @@ impl<T: ComplexField<Real = f64>> StuckModes<T> {
             Mat::from_fn(rows.len(), columns.len(), |i, j| matrix[(rows[i], columns[j])].clone())
         };
         let held = (!massless.is_empty() && !others.is_empty())
-            .then(|| block(stiffness, massless, massless))
+            .then(|| block(stiffness.as_ref(), massless, massless))
             .and_then(|own| Some((own.llt(Side::Lower).ok()?, own)))
             .filter(|(factor, own)| {
                 let part = |matrix: MatRef<'_, T>, i| T::real_part_impl(&matrix[(i, i)]);
                 (0..own.nrows()).all(|i| part(factor.L(), i).powi(2) > HELD * part(own.as_ref(), i))
             });
         let Some((factor, _)) = held else {
-            return Ok(Self { modes: modes(mass, stiffness)?, statics: Mat::zeros(size, 0) });
+            return Ok(Self { modes: modes_of(mass, stiffness)?, statics: Mat::zeros(size, 0) });
         };
-        let coupling = block(stiffness, massless, &others);
+        let coupling = block(stiffness.as_ref(), massless, &others);
         let carried = factor.solve(&coupling);
-        let condensed = block(stiffness, &others, &others) - coupling.adjoint() * &carried;
+        let condensed = block(stiffness.as_ref(), &others, &others) - coupling.adjoint() * &carried;
         let condensed = Mat::from_fn(others.len(), others.len(), |i, j| {
             let twice = condensed[(i, j)].clone() + T::conj_impl(&condensed[(j, i)]);
             T::mul_real_impl(&twice, &0.5)
         });
         let Modes { omega_squared, shapes } =
-            modes(block(mass, &others, &others).as_ref(), condensed.as_ref())?;
+            modes_of(block(mass, &others, &others).as_ref(), condensed)?;
         let follow = &carried * &shapes;
         let mut whole = Mat::zeros(size, shapes.ncols());
         let mut statics = Mat::zeros(size, massless.len());

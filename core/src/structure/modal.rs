@@ -122,7 +122,7 @@ impl ModalCompliance {
         let stuck = if restrained.as_ref() == structure.stiffness() {
             StuckModes { modes: free.clone(), statics: Mat::zeros(structure.dofs(), 0) }
         } else {
-            structure.modes_at(restrained.as_ref())?
+            structure.modes_at(restrained.clone())?
         };
         let wave = Wave {
             law: structure.is_proportional() && !follows_mass(damping, mass),

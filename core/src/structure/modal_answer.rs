@@ -3,6 +3,7 @@
 use super::contact_coordinates::{ContactCoordinates, Inverse, ModalOrders, Order};
 use super::contact_modes::ContactModes;
 use super::contact_shapes::{displace, excite, gather, ContactShapes};
+use super::quasi_static::QuasiStatic;
 use crate::solve::{gmres, KrylovSettings};
 use crate::Error;
 use faer::linalg::matmul::matmul;
@@ -122,31 +123,22 @@ impl ContactCoordinates for ContactModes {
         at.add(|harmonic| self.load(harmonic), forces);
     }
 
-    fn quasi_static(
-        &self,
-        at: &ModalOrders,
-        contacts: &[usize],
-    ) -> Option<(ContactShapes, Mat<f64>)> {
+    fn quasi_static(&self, at: &ModalOrders) -> Option<&QuasiStatic> {
         let slow = self.modes() / SLOWEST;
         let one = c64::new(1.0, 0.0);
         let follows = |order: &Order| {
             let Inverse::Diagonal(inverse) = &order.inverse else { return false };
             let others = inverse.iter().zip(&self.omega_squared).skip(slow);
-            others.map(|(z, k)| (z * *k - one).norm()).all(|change| change <= QUASI_STATIC)
+            let mut change = others.map(|(z, k)| (z * *k - one).norm_sqr());
+            change.all(|squared| squared <= QUASI_STATIC * QUASI_STATIC)
         };
         if self.is_coupled() || !at.orders.iter().all(follows) {
             return None;
         }
-        let flexibility = self.flexibility.get_or_init(|| self.flexibility_behind(slow));
-        let mut shapes = Mat::zeros(slow, contacts.len());
-        gather(self.shapes().subrows(0, slow), contacts, &mut shapes);
-        let mut own = Mat::zeros(contacts.len(), contacts.len());
-        for (at, &j) in contacts.iter().enumerate() {
-            let column = flexibility.col_as_slice(j);
-            let entries = own.col_as_slice_mut(at).iter_mut().zip(contacts);
-            entries.for_each(|(entry, &i)| *entry = column[i]);
-        }
-        Some((ContactShapes::Modal(shapes), own))
+        Some(self.quasi_static.get_or_init(|| {
+            let flexibility = self.flexibility_behind(slow);
+            QuasiStatic::new(self.shapes().subrows(0, slow), flexibility.as_ref())
+        }))
     }
 
     fn orders(

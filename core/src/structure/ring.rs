@@ -253,7 +253,7 @@ impl Ring {
                 } else {
                     structure.stiffness().to_owned()
                 };
-                Ok(structure.modes_at(stiffness.as_ref())?.modes.frequencies())
+                Ok(structure.modes_at(stiffness)?.modes.frequencies())
             };
             // The sectors have been decomposed; a disk that cannot be has no stops in a range.
             [true, false].map(|stuck| frequencies(stuck).unwrap_or_default())

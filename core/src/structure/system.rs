@@ -133,7 +133,7 @@ impl Structure {
     /// # Errors
     /// The eigenvalue iteration fails, or the other stiffness is so large that its rounding hides the
     /// structure's own.
-    pub(super) fn modes_at(&self, stiffness: MatRef<'_, f64>) -> Result<StuckModes<f64>, Error> {
+    pub(super) fn modes_at(&self, stiffness: Mat<f64>) -> Result<StuckModes<f64>, Error> {
         let stuck = StuckModes::new(self.mass(), stiffness, &self.massless)?;
         let with_mass = (0..self.dofs()).filter(|i| !self.massless.contains(i));
         let own = with_mass.map(|i| self.stiffness[(i, i)] / self.mass[(i, i)]).fold(0.0, f64::max);

@@ -16,7 +16,7 @@ from stickslip.checks import (
     whole_number,
 )
 from stickslip.errors import ModelError
-from stickslip.fe.reduction import Reduction
+from stickslip.fe.reduction import Reduction, panels
 from stickslip.fe.sparse import Factor, lowest_modes, symmetric_sparse
 from stickslip.model.matrix_units import MatrixUnits, Units
 from stickslip.units import physical_number
@@ -113,7 +113,11 @@ def craig_bampton(
         raise ModelError(
             f"stiffness: the factors of {inner.size} rows do not fit into memory; coarsen"
         ) from None
-    constraint = -factor.solve(K[inner][:, kept].toarray())
+    coupling = K[inner][:, kept].tocsc()
+    constraint = np.empty(coupling.shape)
+    for panel in panels(*coupling.shape):
+        constraint[:, panel] = factor.solve(coupling[:, panel].toarray())
+    np.negative(constraint, out=constraint)
     inertia = M_ii.diagonal()
     moving = inertia > _MASSLESS * inertia.max()
     highest = float((K_ii.diagonal()[moving] / inertia[moving]).max())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from os import PathLike
 from typing import TYPE_CHECKING, Any
@@ -67,8 +67,7 @@ class Reduction:
         self._basis[rows, np.arange(kept)] = 1.0
         self._basis[inner, :kept] = constraint
         self._basis[inner, kept:] = shapes
-        M = self._basis.T @ (mass @ self._basis)
-        K = self._basis.T @ (stiffness @ self._basis)
+        M, K = _projected(mass, self._basis), _projected(stiffness, self._basis)
         # Constraint and fixed-interface modes are orthogonal in the stiffness: rounding otherwise.
         self.decoupling = float(np.abs(K[:kept, kept:]).max(initial=0.0) / np.abs(K).max())
         K[:kept, kept:] = K[kept:, :kept] = 0.0
@@ -302,9 +301,27 @@ def _sparse_of(dataset: Stored, name: str, size: int) -> csc_array:
     return matrix
 
 
+def panels(rows: int, columns: int) -> Iterator[slice]:
+    """Yield the columns of a matrix that is not to be copied as a whole, some at a time."""
+    width = max(1, _PANEL // (8 * rows))
+    for first in range(0, columns, width):
+        yield slice(first, min(first + width, columns))
+
+
+def _projected(matrix: csc_array, basis: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return T^T A T; A T as a whole would be as large as T."""
+    projected = np.empty((basis.shape[1],) * 2)
+    for panel in panels(*basis.shape):
+        projected[:, panel] = basis.T @ (matrix @ basis[:, panel])
+    return projected
+
+
 def _dofs(boundary: tuple[str, ...], modes: int) -> tuple[str, ...]:
     return (*boundary, *(f"mode-{mode}" for mode in range(1, modes + 1)))
 
+
+_PANEL = 1 << 26
+"""Bytes that are worked on at a time: freed parts below 32 MB may stay with the allocator."""
 
 _RIGID = 1e-3
 """A mode below this part of the first elastic one is a rigid-body mode."""

@@ -89,7 +89,9 @@ class Rayleigh(_DampingLaw):
     def matrix(self, mass: Matrix, stiffness: Matrix, dofs: Sequence[str] | None = None) -> Matrix:
         """Return the damping matrix [kg/s] of mass and stiffness [kg], [N/m], shape (N, N)."""
         with np.errstate(over="ignore", invalid="ignore"):
-            return _finite(self.mass * mass + self.stiffness * stiffness, self)
+            damping = self.mass * mass
+            damping += self.stiffness * stiffness
+            return _finite(damping, self)
 
 
 @dataclass(frozen=True)

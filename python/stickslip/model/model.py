@@ -221,7 +221,7 @@ class Model:
             structure.mass,
             structure.damping,
             structure.stiffness,
-            self._core_contacts(),
+            self._each_core_contact(),
             self._loads(),
             structure.proportional,
         )
@@ -232,8 +232,12 @@ class Model:
 
     def _core_contacts(self) -> list[Any]:
         """Return the contacts as the compiled core takes them."""
+        return list(self._each_core_contact())
+
+    def _each_core_contact(self) -> Iterator[Any]:
+        """Return them one by one: rows of many contacts are no smaller than a matrix."""
         laws = (one.core_laws(*self.contact_rows(one)) for one in self.contacts)
-        return list(chain.from_iterable(laws))
+        return chain.from_iterable(laws)
 
     def raise_own(self) -> None:
         """Raise what a law in Python raised while the core called it."""

@@ -44,8 +44,11 @@ def _bands(matrix: Matrix) -> Matrix | None:
     size = len(matrix)
     if size < _LARGE:
         return None
-    rows, columns = np.nonzero(matrix)
-    width = int(np.abs(rows - columns).max(initial=0))
+    # The places of all numbers would take several times as much memory as a full matrix.
+    filled = matrix != 0.0
+    rows = np.flatnonzero(filled.any(axis=1))
+    first, last = filled.argmax(axis=1), size - 1 - filled[:, ::-1].argmax(axis=1)
+    width = int(np.maximum(rows - first[rows], last[rows] - rows).max(initial=0))
     if width * _LARGE > size:
         return None
     bands = np.zeros((width + 1, size))

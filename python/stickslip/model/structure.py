@@ -249,7 +249,7 @@ def _symmetric(matrix: Matrix, entry: str, names: tuple[str, ...]) -> Matrix:
     with np.errstate(over="ignore"):
         difference = matrix - matrix.T
     np.abs(difference, out=difference)
-    if difference.max() > _ASYMMETRY * np.abs(matrix).max():
+    if difference.max() > _ASYMMETRY * max(matrix.max(), -matrix.min()):
         row, column = np.unravel_index(difference.argmax(), difference.shape)
         triangular = not (np.tril(matrix, -1).any() and np.triu(matrix, 1).any())
         remedy = (

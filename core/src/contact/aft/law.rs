@@ -13,6 +13,7 @@ use crate::contact::{
     AssumedStart, ContactLaw, Describing, Element, Held, Motion, Parameter, Phase, PointSummary,
     Residual, SlipLoad, Unslipped,
 };
+use crate::fourier::Harmonics;
 use crate::Error;
 use faer::Mat;
 use std::ops::Deref;
@@ -68,6 +69,11 @@ impl<L: Deref<Target: ContactLaw>> HarmonicForce for Aft<L> {
         if self.is_sum() {
             return;
         }
+        // Of several displacements the start is known whether they slip or not.
+        let begun = (count > 1).then(|| self.begin(motion));
+        if let Some(lost) = begun.as_ref().and_then(|begun| self.surely_unslipped(motion, begun)) {
+            return keep(lost, harmonics, out);
+        }
         let samples = Samples::of(motion, self.samples);
         let basis = |n: usize| &samples.basis[n * slots..(n + 1) * slots];
         if let Some((load, ends)) = self.stuck(&samples, motion.residual) {
@@ -81,18 +87,10 @@ impl<L: Deref<Target: ContactLaw>> HarmonicForce for Aft<L> {
             }
             return;
         }
-        let begun = self.begin(motion);
+        let begun = begun.unwrap_or_else(|| self.begin(motion));
         let stiffness = self.law.stiffness();
-        if let Some(Unslipped { value, rate }) = self.unslipped(&samples, &begun) {
-            if harmonics.has_mean() {
-                out.value.iter_mut().step_by(slots).zip(value).for_each(|(mean, q)| *mean = q);
-                out.active = rate.iter().any(|rate| *rate != 0.0);
-                let (size, means) = (count * slots, out.tangent.chunks_exact_mut(count * slots));
-                for (row, rate) in means.step_by(slots).zip(rate.chunks_exact(size)) {
-                    row.copy_from_slice(rate);
-                }
-            }
-            return;
+        if let Some(lost) = self.unslipped(&samples, &begun) {
+            return keep(lost, harmonics, out);
         }
         let round = self.march(&samples, &begun, false);
         let lost = |n: usize, i: usize| {
@@ -111,12 +109,10 @@ impl<L: Deref<Target: ContactLaw>> HarmonicForce for Aft<L> {
             return;
         }
         out.active = true;
-        let weight = 2.0 / samples.count as f64;
-        for n in 0..samples.count {
-            for (i, series) in out.value.chunks_exact_mut(slots).enumerate() {
-                let q = weight * lost(n, i).0;
-                series.iter_mut().zip(basis(n)).for_each(|(value, b)| *value += q * b);
-            }
+        let mut taken = vec![0.0; samples.count];
+        for (i, series) in out.value.chunks_exact_mut(slots).enumerate() {
+            taken.iter_mut().enumerate().for_each(|(n, q)| *q = lost(n, i).0);
+            samples.project(&taken, series);
         }
         if tangent {
             self.differentiate(&samples, &begun, &round.restarts, slots, &mut out.tangent);
@@ -139,8 +135,11 @@ impl<L: Deref<Target: ContactLaw>> HarmonicForce for Aft<L> {
         if self.is_sum() {
             return;
         }
-        let samples = Samples::of(motion, self.samples);
         let begun = self.begin(motion);
+        if self.surely_unslipped(motion, &begun).is_some() {
+            return;
+        }
+        let samples = Samples::of(motion, self.samples);
         let sticks = self.stuck(&samples, motion.residual).is_some();
         if sticks || self.unslipped(&samples, &begun).is_some() {
             return;
@@ -195,6 +194,18 @@ impl<L: Deref<Target: ContactLaw>> HarmonicForce for Aft<L> {
             }
         }
     }
+}
+
+/// Writes what slip takes off the stuck spring's force where nothing slips: it is constant.
+fn keep(Unslipped { value, rate }: Unslipped, harmonics: &Harmonics, out: &mut SlipLoad) {
+    if !harmonics.has_mean() {
+        return;
+    }
+    let (slots, size) = (harmonics.slots(), out.value.len());
+    out.value.iter_mut().step_by(slots).zip(value).for_each(|(mean, q)| *mean = q);
+    out.active = rate.iter().any(|rate| *rate != 0.0);
+    let means = out.tangent.chunks_exact_mut(size).step_by(slots);
+    means.zip(rate.chunks_exact(size)).for_each(|(row, rate)| row.copy_from_slice(rate));
 }
 
 /// Methods that a law which evaluates another one has from that.

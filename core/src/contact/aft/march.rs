@@ -43,6 +43,10 @@ pub(super) struct Step {
     jacobian: ReturnMapJacobian,
     /// Displacements at the end, in the span or mirrored behind it.
     after: Vec<f64>,
+    /// The derivative of all steps that are those of the spring, if there has been one.
+    spring: Option<ReturnMapJacobian>,
+    /// Whether that is the derivative at hand.
+    springs: bool,
 }
 
 impl<L: Deref<Target: ContactLaw>> Aft<L> {
@@ -94,6 +98,17 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
         (samples.sign > 0.0 || lost.value.iter().all(|q| *q == 0.0)).then_some(lost)
     }
 
+    /// The same as far as the amplitudes of a motion alone show it.
+    pub(super) fn surely_unslipped(
+        &self,
+        motion: Motion<'_>,
+        begun: &AssumedStart,
+    ) -> Option<Unslipped> {
+        let lost = self.law.surely_unslipped(begun, motion)?;
+        let mirrored = motion.table.harmonics().half_wave();
+        (!mirrored || lost.value.iter().all(|q| *q == 0.0)).then_some(lost)
+    }
+
     /// The first instant, reached without any slip as far as the law admits it.
     pub(super) fn start(&self, samples: &Samples, begun: &AssumedStart) -> Step {
         let (before, state) = (&begun.displacement, begun.state.clone());
@@ -102,8 +117,10 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
             force: vec![0.0; before.len()],
             jacobian: ReturnMapJacobian::default(),
             after: samples.at(0).to_vec(),
+            spring: None,
+            springs: false,
         };
-        let Step { state, force, jacobian, after } = &mut step;
+        let Step { state, force, jacobian, after, .. } = &mut step;
         self.law.return_map(before, after, state, force, Some(jacobian));
         step
     }
@@ -112,11 +129,23 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
     /// derivative of the step, if asked for.
     pub(super) fn advance(&self, samples: &Samples, n: usize, step: &mut Step, derived: bool) {
         let sign = if n == samples.count { samples.sign } else { 1.0 };
-        let Step { state, force, jacobian, after } = step;
-        let now = samples.at(n % samples.count);
+        let Step { state, force, jacobian, after, spring, springs } = step;
+        let (before, now) = (samples.at(n - 1), samples.at(n % samples.count));
         after.iter_mut().zip(now).for_each(|(after, now)| *after = sign * now);
-        let jacobian = derived.then_some(jacobian);
-        self.law.return_map(samples.at(n - 1), after, state, force, jacobian);
+        if !self.law.springs(before, after, state, force) {
+            *springs &= !derived;
+            return self.law.return_map(before, after, state, force, derived.then_some(jacobian));
+        }
+        if derived && !*springs {
+            let spring = spring.get_or_insert_with(|| {
+                // A step to where it is.
+                let mut of_spring = ReturnMapJacobian::default();
+                self.law.return_map(after, after, state, force, Some(&mut of_spring));
+                of_spring
+            });
+            jacobian.clone_from(spring);
+            *springs = true;
+        }
     }
 
     /// Marches until the state repeats; with `account` of the friction work.
@@ -124,8 +153,10 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
         let (count, size) = (self.law.displacements(), self.law.state_size());
         let (stiffness, state_stiffness) = (self.law.stiffness(), self.law.state_stiffness());
         let departs = |step: &Step| {
-            !(is_elastic(&step.jacobian, &state_stiffness)
-                && follows(&step.jacobian, &stiffness, &state_stiffness))
+            let stays = step.springs
+                || (is_elastic(&step.jacobian, &state_stiffness)
+                    && follows(&step.jacobian, &stiffness, &state_stiffness));
+            !stays
         };
         let mut step = self.start(samples, begun);
         let mut round = Round {
@@ -155,7 +186,7 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
                 // Once it has slipped, forces are enough unless more is asked for.
                 let derived = account || !round.slipped || lap.is_some();
                 self.advance(samples, n, &mut step, derived);
-                if let Some(lap) = &mut lap {
+                if let Some(lap) = lap.as_mut().filter(|_| !step.springs) {
                     lap.advance(&step.jacobian.by_state);
                 }
                 round.slipped = round.slipped || departs(&step);
@@ -243,13 +274,15 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
                 if last {
                     // Between two slips the slip load keeps its derivative: instants are summed.
                     sum.iter_mut().zip(basis(n - 1)).for_each(|(sum, b)| *sum += weight * b);
-                    rate.add_direct(&step.jacobian, weight, basis(n - 1), out);
+                    if !step.springs {
+                        rate.add_direct(&step.jacobian, weight, basis(n - 1), out);
+                    }
                 }
                 force_by_state.clone_from(&step.jacobian.force_by_state);
                 self.advance(samples, n, &mut step, true);
                 let wraps = n == samples.count;
-                let changes = !is_elastic(&step.jacobian, &state_stiffness)
-                    || force_by_state != step.jacobian.force_by_state;
+                let elastic = step.springs || is_elastic(&step.jacobian, &state_stiffness);
+                let changes = !elastic || force_by_state != step.jacobian.force_by_state;
                 if wraps || changes {
                     if last {
                         rate.add_to(&force_by_state, &mut sum, out);

@@ -1,6 +1,7 @@
 //! Displacements at the equidistant instants of a march.
 
 use crate::contact::Motion;
+use crate::solve::dot;
 use std::sync::Arc;
 
 /// Instants whose sums go through the processor side by side.
@@ -13,6 +14,8 @@ pub struct Samples {
     /// −1 if the second half of the period mirrors the first.
     pub sign: f64,
     pub basis: Arc<[f64]>,
+    /// The basis, function after function.
+    functions: Arc<[f64]>,
     /// Instant after instant.
     pub displacement: Vec<f64>,
 }
@@ -21,35 +24,53 @@ impl Samples {
     /// Samples of a motion: `samples` per period, half of them for a half-wave symmetric one.
     pub fn of(motion: Motion<'_>, samples: usize) -> Self {
         let harmonics = motion.table.harmonics();
-        let slots = harmonics.slots();
+        let slots = harmonics.slots().max(1);
         let half = harmonics.half_wave();
         let count = if half { samples / 2 } else { samples };
-        let basis = motion.table.basis(samples, count);
-        let points = motion.displacement.len() / slots.max(1);
-        let mut displacement = vec![0.0; count * points];
-        let whole = basis.len() / (AT_ONCE * slots).max(1) * AT_ONCE;
-        let (blocks, rest) = displacement.split_at_mut(whole * points);
-        let (rows, last) = basis.split_at(whole * slots);
-        for (point, series) in motion.displacement.chunks_exact(slots).enumerate() {
-            let blocks = blocks.chunks_exact_mut(AT_ONCE * points);
-            for (out, rows) in blocks.zip(rows.chunks_exact(AT_ONCE * slots)) {
-                let mut sums = [0.0; AT_ONCE];
-                for (slot, c) in series.iter().enumerate() {
-                    sums.iter_mut().enumerate().for_each(|(n, u)| *u += c * rows[n * slots + slot]);
-                }
-                out.iter_mut().skip(point).step_by(points).zip(sums).for_each(|(u, sum)| *u = sum);
-            }
-            let rest = rest.iter_mut().skip(point).step_by(points);
-            for (u, row) in rest.zip(last.chunks_exact(slots)) {
-                *u = series.iter().zip(row).map(|(c, b)| c * b).sum();
-            }
-        }
-        Self { count, sign: if half { -1.0 } else { 1.0 }, basis, displacement }
+        let [basis, functions] = motion.table.basis(samples, count);
+        let mut displacement = vec![0.0; motion.displacement.len() / slots * count];
+        pulp::Arch::new().dispatch(|| {
+            sample(motion.displacement, [slots, count], &functions, &mut displacement)
+        });
+        Self { count, sign: if half { -1.0 } else { 1.0 }, basis, functions, displacement }
     }
 
     /// Displacements at instant n.
     pub fn at(&self, n: usize) -> &[f64] {
         let points = self.displacement.len() / self.count;
         &self.displacement[n * points..(n + 1) * points]
+    }
+
+    /// Coefficients of values at the instants, as if all functions had the square of the sines.
+    pub fn project(&self, values: &[f64], series: &mut [f64]) {
+        let weight = 2.0 / self.count as f64;
+        pulp::Arch::new().dispatch(|| {
+            for (coefficient, function) in
+                series.iter_mut().zip(self.functions.chunks_exact(self.count.max(1)))
+            {
+                *coefficient = weight * dot(values, function);
+            }
+        });
+    }
+}
+
+/// Writes series at instants, instant after instant.
+#[inline(always)]
+fn sample(all: &[f64], [slots, count]: [usize; 2], functions: &[f64], displacement: &mut [f64]) {
+    let points = all.len() / slots;
+    for (point, series) in all.chunks_exact(slots).enumerate() {
+        for first in (0..count).step_by(AT_ONCE) {
+            let here = AT_ONCE.min(count - first);
+            let mut sums = [0.0; AT_ONCE];
+            for (c, function) in series.iter().zip(functions.chunks_exact(count)) {
+                let function = &function[first..first + here];
+                match <&[f64; AT_ONCE]>::try_from(function) {
+                    Ok(function) => (0..AT_ONCE).for_each(|n| sums[n] += c * function[n]),
+                    Err(_) => sums.iter_mut().zip(function).for_each(|(u, b)| *u += c * b),
+                }
+            }
+            let out = displacement[first * points..].iter_mut().skip(point).step_by(points);
+            out.zip(&sums[..here]).for_each(|(u, sum)| *u = *sum);
+        }
     }
 }

@@ -69,6 +69,7 @@ impl<const N: usize> Dual<N> {
         Self { value, slopes }
     }
 
+    #[inline(always)]
     fn combined(value: f64, a: (f64, Self), b: (f64, Self)) -> Self {
         let slope = |i: usize| a.0 * a.1.slopes[i] + b.0 * b.1.slopes[i];
         Self { value, slopes: std::array::from_fn(slope) }
@@ -86,6 +87,7 @@ impl<const N: usize> Real for Dual<N> {
         self.value
     }
 
+    #[inline(always)]
     fn through(self, value: f64, slope: f64) -> Self {
         Self { value, slopes: self.slopes.map(|own| slope * own) }
     }
@@ -94,6 +96,7 @@ impl<const N: usize> Real for Dual<N> {
 impl<const N: usize> Neg for Dual<N> {
     type Output = Self;
 
+    #[inline(always)]
     fn neg(self) -> Self {
         self.through(-self.value, -1.0)
     }
@@ -102,6 +105,7 @@ impl<const N: usize> Neg for Dual<N> {
 impl<const N: usize> Add for Dual<N> {
     type Output = Self;
 
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         Self::combined(self.value + other.value, (1.0, self), (1.0, other))
     }
@@ -110,6 +114,7 @@ impl<const N: usize> Add for Dual<N> {
 impl<const N: usize> Sub for Dual<N> {
     type Output = Self;
 
+    #[inline(always)]
     fn sub(self, other: Self) -> Self {
         Self::combined(self.value - other.value, (1.0, self), (-1.0, other))
     }
@@ -118,6 +123,7 @@ impl<const N: usize> Sub for Dual<N> {
 impl<const N: usize> Mul for Dual<N> {
     type Output = Self;
 
+    #[inline(always)]
     fn mul(self, other: Self) -> Self {
         Self::combined(self.value * other.value, (other.value, self), (self.value, other))
     }
@@ -126,6 +132,7 @@ impl<const N: usize> Mul for Dual<N> {
 impl<const N: usize> Div for Dual<N> {
     type Output = Self;
 
+    #[inline(always)]
     fn div(self, other: Self) -> Self {
         let ratio = self.value / other.value;
         Self::combined(ratio, (1.0 / other.value, self), (-ratio / other.value, other))

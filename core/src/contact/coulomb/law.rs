@@ -12,7 +12,7 @@
 //! (Yang, Chu and Menq 1998; Petrov and Ewins 2003.) A preload is in equilibrium without motion: the
 //! structure feels N − N₀. Behind a gap it feels all of N.
 
-use super::dual::{Dual, Real};
+use super::dual::Real;
 use crate::contact::law::HarmonicForce;
 use crate::contact::parameter::number;
 use crate::contact::return_map::ReturnMapJacobian;
@@ -21,9 +21,6 @@ use crate::contact::{AssumedStart, ContactLaw, Held, Motion, Parameter, Paramete
 use crate::Error;
 use faer::Mat;
 use std::sync::Arc;
-
-/// Numbers that a step depends on: traction before (2), tangential change (2), N before and after.
-const INPUTS: usize = 6;
 
 /// What presses the bodies together without motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -144,7 +141,7 @@ impl Coulomb {
     }
 
     /// The traction as two numbers, in whatever number of directions.
-    fn pair<T: Real>(&self, of: impl Fn(usize) -> T) -> [T; 2] {
+    pub(super) fn pair<T: Real>(&self, of: impl Fn(usize) -> T) -> [T; 2] {
         [of(0), if self.directions == 2 { of(1) } else { T::from(0.0) }]
     }
 
@@ -220,25 +217,16 @@ impl ContactLaw for Coulomb {
             .collect()
     }
 
-    /// The cone is convex: what is in it at all instants does not leave it on the lines between them.
     fn unslipped(&self, begun: &AssumedStart, displacement: &[f64]) -> Option<Unslipped> {
-        let k = self.tangential_stiffness;
-        let offset = self.pair(|i| k * begun.displacement[i] - begun.state[i]);
-        let inside = |u: &[f64]| {
-            let limit = self.friction * self.pressing(u);
-            let [x, y] = self.pair(|i| k * u[i] - offset[i]);
-            limit > 0.0 && squared([x, y]) <= limit * limit
-        };
-        let count = self.displacements();
-        if self.pressing(&begun.displacement) <= 0.0
-            || !displacement.chunks_exact(count).all(inside)
-        {
-            return None;
-        }
-        let mut value = offset[..self.directions].to_vec();
-        value.resize(count, self.balanced() - self.normal_at_rest());
-        let rows = begun.rate.len() / count * self.directions;
-        Some(Unslipped { value, rate: begun.rate[..rows].iter().map(|rate| k * rate).collect() })
+        self.within_cone(begun, displacement)
+    }
+
+    fn surely_unslipped(&self, begun: &AssumedStart, motion: Motion<'_>) -> Option<Unslipped> {
+        self.within_bounds(begun, motion)
+    }
+
+    fn springs(&self, before: &[f64], after: &[f64], state: &mut [f64], force: &mut [f64]) -> bool {
+        self.spring_step([before, after], state, force)
     }
 
     fn return_map(
@@ -249,63 +237,19 @@ impl ContactLaw for Coulomb {
         force: &mut [f64],
         jacobian: Option<&mut ReturnMapJacobian>,
     ) {
-        let (count, directions) = (self.displacements(), self.directions);
-        let du = |i: usize| after[i] - before[i];
-        let (from, to) = (self.pressing(before), self.pressing(after));
-        if let Some(normal) = force.get_mut(directions) {
-            *normal = to.max(0.0) - self.balanced();
-        }
+        let directions = self.directions;
         let Some(jacobian) = jacobian else {
+            let du = |i: usize| after[i] - before[i];
+            let (from, to) = (self.pressing(before), self.pressing(after));
+            if let Some(normal) = force.get_mut(directions) {
+                *normal = to.max(0.0) - self.balanced();
+            }
             let passage = self.step(self.pair(|i| state[i]), self.pair(du), from, to);
             state.copy_from_slice(&passage.traction[..directions]);
             force[..directions].copy_from_slice(state);
             return;
         };
-        jacobian.reset(count, directions);
-        // Along a step that sticks from end to end the derivative is that of a spring.
-        let plain = self.step(self.pair(|i| state[i]), self.pair(du), from, to);
-        if from > 0.0 && plain.open == 0.0 && plain.slipping == 0.0 {
-            for i in 0..directions {
-                (state[i], force[i]) = (plain.traction[i], plain.traction[i]);
-                jacobian.by_state[i * directions + i] = 1.0;
-                jacobian.by_after[i * count + i] = self.tangential_stiffness;
-                jacobian.by_before[i * count + i] = -self.tangential_stiffness;
-                jacobian.force_by_state[i * directions + i] = 1.0;
-            }
-            if let (true, Some(normal)) = (count > directions, self.normal_stiffness) {
-                jacobian.force_by_after[directions * count + directions] = normal;
-            }
-            return;
-        }
-        let input = |value: f64, index: usize| Dual::<INPUTS>::variable(value, index);
-        let passage = self.step(
-            self.pair(|i| input(state[i], i)),
-            self.pair(|i| input(du(i), 2 + i)),
-            input(from, 4),
-            input(to, 5),
-        );
-        let normal = self.normal_stiffness.unwrap_or(0.0);
-        for (i, traction) in passage.traction[..directions].iter().enumerate() {
-            let slopes = &traction.slopes;
-            (state[i], force[i]) = (traction.value(), traction.value());
-            for j in 0..directions {
-                jacobian.by_state[i * directions + j] = slopes[j];
-                jacobian.by_after[i * count + j] = slopes[2 + j];
-                jacobian.by_before[i * count + j] = -slopes[2 + j];
-            }
-            if count > directions {
-                jacobian.by_before[i * count + directions] = normal * slopes[4];
-                jacobian.by_after[i * count + directions] = normal * slopes[5];
-            }
-            jacobian.force_by_state[i * directions + i] = 1.0;
-            jacobian.slipping[i] = passage.slipping;
-        }
-        if count > directions {
-            jacobian.slipping[directions] = passage.open;
-            if to > 0.0 {
-                jacobian.force_by_after[directions * count + directions] = normal;
-            }
-        }
+        self.differentiated_step([before, after], state, force, jacobian);
     }
 
     fn beginning(&self) -> (Vec<f64>, Vec<f64>) {

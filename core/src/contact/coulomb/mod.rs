@@ -17,6 +17,7 @@ mod play;
 mod slip;
 mod slip_ends;
 mod step;
+mod sticking;
 mod variation;
 
 pub use law::{Closure, Coulomb};
