@@ -3,7 +3,7 @@
 //! A body that contacts alone hold slides away where some rigid-body motion exists along which the load
 //! does more work than the contacts take, however far it goes: the kinematic theorem of limit analysis.
 
-use super::statics::Loading;
+use super::statics::{static_response, Loading, RestStatus};
 use crate::model::Model;
 use crate::solve::norm;
 use faer::Mat;
@@ -19,6 +19,14 @@ const MOST: usize = 300;
 pub(super) fn is_carried_away(model: &Model) -> bool {
     let loaded = model.compliance().forced_harmonics().contains(&0);
     loaded && Loading::new(model).is_ok_and(|loading| loading.goes_away())
+}
+
+/// Whether the static loads of a model, raised from rest, let go of a body that contacts alone hold.
+pub(crate) fn is_let_go(model: &Model) -> bool {
+    let loaded = model.compliance().forced_harmonics().contains(&0);
+    let at_rest = || static_response(model, &[], &|_| true);
+    is_carried_away(model)
+        || (loaded && at_rest().is_ok_and(|rest| rest.status == RestStatus::Free))
 }
 
 impl Loading<'_> {

@@ -9,7 +9,8 @@ use super::shooting::Shooting;
 use super::sliders::{choose, Assumption, Chosen};
 use super::start::{later, start_of};
 use crate::balance::{
-    ForcedBalance, HarmonicChoice, Kept, Point, PointStatus, Progress, Settings, Unknowns,
+    is_let_go, ForcedBalance, HarmonicChoice, Kept, Point, PointStatus, Progress, Settings,
+    Unknowns,
 };
 use crate::contact::Residual;
 use crate::model::Model;
@@ -194,8 +195,11 @@ impl<'a> PeriodicOrbits<'a> {
         let size = crate::solve::norm(&y).max(f64::MIN_POSITIVE);
         let closing = crate::solve::norm(&residual) / size;
         if closing.is_nan() || closing > CLOSED || chosen == Chosen::Lost {
-            let spent = shooting.flow.is_spent();
-            let status = if spent { PointStatus::StepsLimit } else { PointStatus::Stalled };
+            let status = match shooting.flow.is_spent() {
+                _ if is_let_go(self.plan.model) => PointStatus::Free,
+                true => PointStatus::StepsLimit,
+                false => PointStatus::Stalled,
+            };
             let mut orbit = self.empty(omega, status);
             orbit.response.residual = closing;
             orbit.response.iterations = iterations;
@@ -216,6 +220,13 @@ impl<'a> PeriodicOrbits<'a> {
                 })?),
             };
         self.profile.factorisations += shooting.matrices;
+        let keeps_tractions = known.as_ref().is_some_and(|(_, neutral)| *neutral > 0);
+        let from_rest = self.plan.settings.residual == Residual::FromRest;
+        let unsupported = from_rest && self.plan.with_history.is_none();
+        if keeps_tractions && unsupported && is_let_go(self.plan.model) {
+            // Contacts hold the body somewhere, but not where its loads take it from rest.
+            return Ok(self.empty(omega, PointStatus::Free));
+        }
         let start = std::time::Instant::now();
         let empty = self.empty(omega, PointStatus::Converged);
         let (settings, quadrature) = (&self.plan.settings, &mut self.quadrature);
