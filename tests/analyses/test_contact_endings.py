@@ -60,6 +60,31 @@ def test_orbits_of_bodies_that_static_loads_carry_away_are_free(friction: float)
     assert ss.forced_response(model, [90.0], 5).status == ("free",)
 
 
+@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize(("share", "status"), [(0.95, "converged"), (1.1, "free")])
+def test_a_body_on_one_node_slides_away_under_more_than_its_friction(
+    seed: int, share: float, status: str
+) -> None:
+    random = np.random.default_rng(seed)
+    root = np.sqrt(np.diag(random.uniform(0.5, 2.0, 3)))
+    turn, _ = np.linalg.qr(random.normal(size=(3, 3)))
+    shapes = root @ turn
+    rates = np.array([0.0, *np.sort(random.uniform(100.0, 600.0, 2))])
+    stiffness = shapes @ np.diag(rates**2) @ shapes.T
+    stiffness = (stiffness + stiffness.T) / 2.0
+    structure = ss.Structure(root**2, stiffness, 1e-4 * stiffness, ["a", "b", "c"])
+    pad = ss.Coulomb(["c"], normal=None, friction=0.34, tangential_stiffness=1.6e5, preload=100.0)
+    rigid = np.linalg.solve(root**2, shapes[:, 0])
+    load = np.array([15.0, 28.0, 40.0])
+    load *= share * 34.0 * rigid[2] / (load @ rigid)
+    static = [ss.Force(dof, float(f), harmonic=0) for dof, f in zip("abc", load, strict=True)]
+    assert ss.static_response(ss.Model(structure, [pad], static)).status == status
+    if status == "free":
+        model = ss.Model(structure, [pad], [*static, ss.Force("a", 60.0)])
+        assert ss.exact_response(model, [350.0]).status == ("free",)
+        assert ss.forced_response(model, [350.0], 5).status == ("free",)
+
+
 def test_orbits_that_no_load_from_rest_leads_to_are_free() -> None:
     """Pressed far enough against a face by hand, bodies stick there; from rest they are lost."""
     chain = np.array([[1.0, -1.0], [-1.0, 1.0]])

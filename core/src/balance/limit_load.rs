@@ -40,7 +40,9 @@ impl Loading<'_> {
         let springs = &self.receptance * self.model.contact_stiffness();
         let Ok(parts) = (Mat::<f64>::identity(size, size) - springs).svd() else { return false };
         let values = parts.S().column_vector();
-        let rigid = (0..size).filter(|&i| values[i] <= ROUNDING * values[0]);
+        // All of them are rounding where every contact moves with a body that floats.
+        let largest = values[0].max(1.0);
+        let rigid = (0..size).filter(|&i| values[i] <= ROUNDING * largest);
         let (left, right) = (parts.U(), parts.V());
         let load = norm(&self.stuck());
         let missing = self.missing(&self.level.u);
