@@ -16,7 +16,7 @@ const ROUNDING: f64 = 1e-9;
 const MOST: usize = 300;
 
 /// Whether the static loads of a model carry a body away that contacts alone hold.
-pub(super) fn is_carried_away(model: &Model) -> bool {
+pub(crate) fn is_carried_away(model: &Model) -> bool {
     let loaded = model.compliance().forced_harmonics().contains(&0);
     loaded && Loading::new(model).is_ok_and(|loading| loading.goes_away())
 }

@@ -45,7 +45,7 @@ pub(crate) use evaluation::Evaluated;
 pub use forced::ForcedBalance;
 pub(crate) use forced::WarmStart;
 pub use history::with_history;
-pub(crate) use limit_load::is_let_go;
+pub(crate) use limit_load::{is_carried_away, is_let_go};
 pub use linearised::{Cause, Linearised};
 pub(crate) use peak::brent;
 pub use peak::refine_peak;

@@ -9,8 +9,7 @@ use super::shooting::Shooting;
 use super::sliders::{choose, Assumption, Chosen};
 use super::start::{later, start_of};
 use crate::balance::{
-    is_let_go, ForcedBalance, HarmonicChoice, Kept, Point, PointStatus, Progress, Settings,
-    Unknowns,
+    ForcedBalance, HarmonicChoice, Kept, Point, PointStatus, Progress, Settings, Unknowns,
 };
 use crate::contact::Residual;
 use crate::model::Model;
@@ -167,6 +166,9 @@ impl<'a> PeriodicOrbits<'a> {
     /// The eigenvalues of a transition matrix cannot be found; a DOF that has hardly any mass.
     pub fn solve(&mut self, omega: f64, neighbour: Option<&State>) -> Result<Orbit, Error> {
         self.plan.system.check_pace(self.plan.model, omega, FASTEST)?;
+        if self.plan.carried_away {
+            return Ok(self.empty(omega, PointStatus::Free));
+        }
         let (progress, share) = (self.progress, self.share);
         let interrupted = || !progress(share);
         let system = Arc::clone(&self.plan.system);
@@ -196,7 +198,7 @@ impl<'a> PeriodicOrbits<'a> {
         let closing = crate::solve::norm(&residual) / size;
         if closing.is_nan() || closing > CLOSED || chosen == Chosen::Lost {
             let status = match shooting.flow.is_spent() {
-                _ if is_let_go(self.plan.model) => PointStatus::Free,
+                _ if self.plan.is_let_go() => PointStatus::Free,
                 true => PointStatus::StepsLimit,
                 false => PointStatus::Stalled,
             };
@@ -221,9 +223,7 @@ impl<'a> PeriodicOrbits<'a> {
             };
         self.profile.factorisations += shooting.matrices;
         let keeps_tractions = known.as_ref().is_some_and(|(_, neutral)| *neutral > 0);
-        let from_rest = self.plan.settings.residual == Residual::FromRest;
-        let unsupported = from_rest && self.plan.with_history.is_none();
-        if keeps_tractions && unsupported && is_let_go(self.plan.model) {
+        if keeps_tractions && self.plan.is_let_go() {
             // Contacts hold the body somewhere, but not where its loads take it from rest.
             return Ok(self.empty(omega, PointStatus::Free));
         }
