@@ -5,7 +5,7 @@
 mod common;
 
 use common::System;
-use faer::{mat, Mat};
+use faer::{c64, mat, Mat};
 use std::cell::Cell;
 use stickslip_core::balance::{
     sweep, ExactOrbits, ForcedBalance, HarmonicChoice, Point, PointStatus, Settings,
@@ -45,6 +45,14 @@ impl ExactOrbits for Counted<'_> {
 
     fn price(&self, omega: f64, events: usize, highest: usize) -> Option<f64> {
         self.rescue.price(omega, events, highest)
+    }
+
+    fn settled(&self, omega: f64, highest: usize) -> Option<Vec<c64>> {
+        self.rescue.settled(omega, highest)
+    }
+
+    fn is_one_of_many(&self, omega: f64) -> bool {
+        self.rescue.is_one_of_many(omega)
     }
 }
 

@@ -103,7 +103,7 @@ def test_dataset(frf):
     }
     assert all(variable.attrs["long_name"] for variable in dataset.variables.values())
     flags = dataset["status"].attrs
-    assert flags["flag_values"].tolist() == list(range(10))
+    assert flags["flag_values"].tolist() == list(range(11))
     assert flags["flag_meanings"].split() == [
         "converged",
         "stalled",
@@ -115,6 +115,7 @@ def test_dataset(frf):
         "steps_limit",
         "effort_limit",
         "free",
+        "history",
     ]
     assert dataset.attrs["stickslip_version"] == ss.__version__
     assert json.loads(dataset.attrs["settings"])["residual"] == 1.5

@@ -123,7 +123,9 @@ impl ForcedBalance<'_> {
             Outcome::Converged => PointStatus::Converged,
             Outcome::Singular if equations.free => PointStatus::Free,
             Outcome::Stalled if equations.loose || equations.floats() => PointStatus::Free,
-            Outcome::Stalled if is_carried_away(&self.model) => PointStatus::Free,
+            Outcome::Stalled | Outcome::Singular if is_carried_away(&self.model) => {
+                PointStatus::Free
+            }
             Outcome::Stalled => PointStatus::Stalled,
             Outcome::Singular => PointStatus::Singular,
         };
@@ -163,7 +165,8 @@ impl ForcedBalance<'_> {
         if_bounded(report, x, equations)
     }
 
-    /// Newton's method from the exact orbit; whether there is one.
+    /// Newton's method from the exact orbit, or from a motion that settles where laws have no events and
+    /// no homotopy leads on; whether there is an orbit.
     fn start_again(
         &self,
         equations: &mut Condensed<'_>,
@@ -172,9 +175,13 @@ impl ForcedBalance<'_> {
         report: &mut Report,
     ) -> bool {
         let harmonics = equations.harmonics();
-        let orbit = self.orbit_to_start_from(omega, harmonics.highest());
-        let Some(amplitudes) = orbit.map(|orbit| orbit.contact_displacement) else { return false };
-        let orders = harmonics.highest() + 1;
+        let highest = harmonics.highest();
+        let exact =
+            self.orbit_to_start_from(omega, highest).map(|orbit| orbit.contact_displacement);
+        let is_exact = exact.is_some();
+        let settled = || self.rescue.filter(|_| !self.follows())?.settled(omega, highest);
+        let Some(amplitudes) = exact.or_else(settled) else { return false };
+        let orders = highest + 1;
         let mut trial = vec![0.0; x.len()];
         let points = amplitudes.chunks_exact(orders).zip(trial.chunks_exact_mut(harmonics.slots()));
         points.for_each(|(amplitudes, series)| harmonics.write_series(amplitudes, series));
@@ -185,7 +192,7 @@ impl ForcedBalance<'_> {
             (report.outcome, report.residual) = (again.outcome, again.residual);
             *x = trial;
         }
-        true
+        is_exact
     }
 
     /// Homotopy, by Newton's method, after the chosen method has failed: first in the contact

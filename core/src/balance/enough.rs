@@ -31,6 +31,15 @@ impl ForcedBalance<'_> {
     /// # Errors
     /// The loads themselves excite an undamped resonance.
     pub fn solve(&mut self, omega: f64, start: Option<&Unknowns>) -> Result<Point, Error> {
+        let mut point = self.climb(omega, start)?;
+        let many = || self.rescue.is_some_and(|orbits| orbits.is_one_of_many(omega));
+        if point.status == PointStatus::Stalled && many() {
+            point.status = PointStatus::History;
+        }
+        Ok(point)
+    }
+
+    fn climb(&mut self, omega: f64, start: Option<&Unknowns>) -> Result<Point, Error> {
         let mut resolution = self.control.first();
         if self.control.is_fixed() {
             return self.solve_with(resolution, omega, start);

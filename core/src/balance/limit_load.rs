@@ -3,7 +3,7 @@
 //! A body that contacts alone hold slides away where some rigid-body motion exists along which the load
 //! does more work than the contacts take, however far it goes: the kinematic theorem of limit analysis.
 
-use super::statics::Loading;
+use super::statics::{static_response, Loading, RestStatus};
 use crate::model::Model;
 use crate::solve::norm;
 use faer::Mat;
@@ -16,9 +16,17 @@ const ROUNDING: f64 = 1e-9;
 const MOST: usize = 300;
 
 /// Whether the static loads of a model carry a body away that contacts alone hold.
-pub(super) fn is_carried_away(model: &Model) -> bool {
+pub(crate) fn is_carried_away(model: &Model) -> bool {
     let loaded = model.compliance().forced_harmonics().contains(&0);
     loaded && Loading::new(model).is_ok_and(|loading| loading.goes_away())
+}
+
+/// Whether the static loads of a model, raised from rest, let go of a body that contacts alone hold.
+pub(crate) fn is_let_go(model: &Model) -> bool {
+    let loaded = model.compliance().forced_harmonics().contains(&0);
+    let at_rest = || static_response(model, &[], &|_| true);
+    is_carried_away(model)
+        || (loaded && at_rest().is_ok_and(|rest| rest.status == RestStatus::Free))
 }
 
 impl Loading<'_> {
@@ -32,7 +40,9 @@ impl Loading<'_> {
         let springs = &self.receptance * self.model.contact_stiffness();
         let Ok(parts) = (Mat::<f64>::identity(size, size) - springs).svd() else { return false };
         let values = parts.S().column_vector();
-        let rigid = (0..size).filter(|&i| values[i] <= ROUNDING * values[0]);
+        // All of them are rounding where every contact moves with a body that floats.
+        let largest = values[0].max(1.0);
+        let rigid = (0..size).filter(|&i| values[i] <= ROUNDING * largest);
         let (left, right) = (parts.U(), parts.V());
         let load = norm(&self.stuck());
         let missing = self.missing(&self.level.u);

@@ -46,6 +46,7 @@ pub(crate) use evaluation::Evaluated;
 pub use forced::ForcedBalance;
 pub(crate) use forced::WarmStart;
 pub use history::with_history;
+pub(crate) use limit_load::{is_carried_away, is_let_go};
 pub use linearised::{Cause, Linearised};
 pub(crate) use peak::brent;
 pub use peak::refine_peak;
@@ -71,6 +72,14 @@ pub trait ExactOrbits {
     /// Floating-point operations that it takes if contacts change their states `events` times per
     /// period; `None` if there is no such orbit.
     fn price(&self, omega: f64, events: usize, highest: usize) -> Option<f64>;
+
+    /// Whether the last orbit, of this frequency, is one of many: contacts that never slip could keep other
+    /// tractions.
+    fn is_one_of_many(&self, omega: f64) -> bool;
+
+    /// Contact displacements of a motion that settles in time where there are no exact orbits, their
+    /// amplitudes up to `highest`, contact after contact.
+    fn settled(&self, omega: f64, highest: usize) -> Option<Vec<faer::c64>>;
 }
 
 /// Where a sweep puts its points as they are solved, for one who does not wait for its end.

@@ -32,6 +32,9 @@ pub enum PointStatus {
     /// Not solved: at a motion on the way contacts yield until nothing holds the mean position of a
     /// body that they alone hold.
     Free = 9,
+    /// Not solved, though there are exact orbits: contacts that never slip keep one of many tractions, and
+    /// which one depends on how the motion was reached.
+    History = 10,
 }
 
 impl PointStatus {
@@ -40,7 +43,12 @@ impl PointStatus {
     pub fn is_solved(self) -> bool {
         !matches!(
             self,
-            Self::Stalled | Self::Singular | Self::Free | Self::NotComputed | Self::StepsLimit
+            Self::Stalled
+                | Self::Singular
+                | Self::Free
+                | Self::History
+                | Self::NotComputed
+                | Self::StepsLimit
         )
     }
 }

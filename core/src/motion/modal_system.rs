@@ -62,7 +62,7 @@ impl ModalSystem {
     ///
     /// # Errors
     /// The eigenvalue iteration fails; the model is one sector of a travelling wave.
-    pub(super) fn marched(model: &Model) -> Result<Self, Error> {
+    pub(crate) fn marched(model: &Model) -> Result<Self, Error> {
         Self::of(model, Bodies::new(model, true)?)
     }
 

@@ -10,9 +10,10 @@ use crate::parallel::in_parts;
 use crate::Error;
 use std::sync::Arc;
 
-/// Change of a multiplier over the relative error of the motion: measured, 5 to 20, and more where contacts
-/// bounce.
+/// Change of a multiplier over the relative error of the motion: measured, 5 to 20, …
 const SENSITIVITY: f64 = 30.0;
+/// … and beyond 150 where contacts bounce: when they touch is less certain than how far they move.
+const BOUNCING: f64 = 300.0;
 
 /// Decides the stability of the points of a curve, as far as the map over a period tells it; those of a
 /// travelling wave stay undecided. `settings` are those of its balance.
@@ -44,7 +45,8 @@ pub fn decide_stability(
         let point = points.get(index).filter(|point| point.is_solved() && progress(0.0))?;
         let found = along(&map, point)?;
         let away = (found.largest() - 1.0).abs();
-        let clear = found.stable().filter(|_| away > SENSITIVITY * relative_error(point));
+        let sensitivity = if bounces(model, point) { BOUNCING } else { SENSITIVITY };
+        let clear = found.stable().filter(|_| away > sensitivity * relative_error(point));
         if clear == Some(true) {
             return Some(clear);
         }
@@ -57,6 +59,17 @@ pub fn decide_stability(
         }
     }
     Ok(())
+}
+
+/// Whether contacts are open for a part of the period.
+fn bounces(model: &Model, point: &Point) -> bool {
+    let open = |place: usize| point.contacts.get(place).map_or(0.0, |one| one.slip_fraction);
+    model.laws().iter().zip(model.points()).any(|(law, points)| {
+        // A spring has no friction to tell of.
+        let is_spring = law.state_size() == 0;
+        let normal = points.clone().last().map_or(0.0, open);
+        !law.is_odd() && (is_spring || (normal > 0.0 && normal < 1.0))
+    })
 }
 
 /// What the estimate gives of the largest vibration of the observed DOFs; nothing without an estimate.

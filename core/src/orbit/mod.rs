@@ -22,6 +22,7 @@ mod residual;
 mod rotation;
 mod segments;
 mod settings;
+mod settled;
 mod shooting;
 mod sliders;
 mod start;

@@ -169,6 +169,9 @@ impl<'a> PeriodicOrbits<'a> {
     /// The eigenvalues of a transition matrix cannot be found; a DOF that has hardly any mass.
     pub fn solve(&mut self, omega: f64, neighbour: Option<&State>) -> Result<Orbit, Error> {
         self.plan.system.check_pace(self.plan.model, omega, FASTEST)?;
+        if self.plan.carried_away {
+            return Ok(self.empty(omega, PointStatus::Free));
+        }
         let (progress, share) = (self.progress, self.share);
         let interrupted = || !progress(share);
         let system = Arc::clone(&self.plan.system);
@@ -210,8 +213,11 @@ impl<'a> PeriodicOrbits<'a> {
         self.profile.evaluations += shooting.flow.steps - steps;
         let Reading { mut orbit, touches, closing, left, .. } = read;
         if closing.is_nan() || closing > CLOSED || chosen == Chosen::Lost {
-            let spent = shooting.flow.is_spent();
-            let status = if spent { PointStatus::StepsLimit } else { PointStatus::Stalled };
+            let status = match shooting.flow.is_spent() {
+                _ if self.plan.is_let_go() => PointStatus::Free,
+                true => PointStatus::StepsLimit,
+                false => PointStatus::Stalled,
+            };
             let mut orbit = self.empty(omega, status);
             orbit.response.residual = closing;
             orbit.response.iterations = iterations;
@@ -231,6 +237,11 @@ impl<'a> PeriodicOrbits<'a> {
                 })?),
             };
         self.profile.factorisations += shooting.matrices;
+        let keeps_tractions = known.as_ref().is_some_and(|(_, neutral)| *neutral > 0);
+        if keeps_tractions && self.plan.is_let_go() {
+            // Contacts hold the body somewhere, but not where its loads take it from rest.
+            return Ok(self.empty(omega, PointStatus::Free));
+        }
         orbit.response.residual = closing;
         orbit.response.iterations = iterations;
         orbit.response.error_estimate = left_error(&shooting, self.plan.observe, &left);

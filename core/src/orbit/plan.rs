@@ -3,7 +3,7 @@
 use super::rotation::Rotation;
 use super::settings::OrbitSettings;
 use super::shooting::STEPS;
-use crate::balance::with_history;
+use crate::balance::{is_carried_away, is_let_go, with_history};
 use crate::contact::Residual;
 use crate::model::Model;
 use crate::motion::{is_passive, ModalSystem};
@@ -16,6 +16,8 @@ pub(super) struct Plan<'a> {
     pub(super) model: &'a Model,
     /// The model with friction that has its history, where it is asked for.
     pub(super) with_history: Option<Arc<Model>>,
+    /// Whether static loads carry a body away that contacts alone hold.
+    pub(super) carried_away: bool,
     pub(super) system: Arc<ModalSystem>,
     pub(super) settings: OrbitSettings,
     pub(super) observe: &'a [usize],
@@ -38,11 +40,13 @@ impl<'a> Plan<'a> {
             Residual::FromRest => with_history(model)?.map(Arc::new),
             Residual::Centred | Residual::Value(_) => None,
         };
+        let unsupported = settings.residual == Residual::FromRest && with_history.is_none();
         let system = Arc::new(ModalSystem::new(with_history.as_deref().unwrap_or(model))?);
         Error::check_dofs(observe, system.modes())?;
         Ok(Self {
             model,
             with_history,
+            carried_away: unsupported && is_carried_away(model),
             system,
             settings,
             observe,
@@ -51,5 +55,11 @@ impl<'a> Plan<'a> {
             rotation: None,
             granted: STEPS,
         })
+    }
+
+    /// Whether static loads, raised from rest, let go of a body that contacts alone hold.
+    pub(super) fn is_let_go(&self) -> bool {
+        let from_rest = self.settings.residual == Residual::FromRest;
+        from_rest && self.with_history.is_none() && is_let_go(self.model)
     }
 }

@@ -4,10 +4,12 @@
 use super::periodic::{PeriodicOrbits, FASTEST};
 use super::price::{orbit_price, steps_for};
 use super::settings::OrbitSettings;
+use super::settled::Settled;
 use crate::balance::{ExactOrbits, Point, PointStatus, Progress};
 use crate::contact::Residual;
 use crate::model::Model;
 use crate::motion::State;
+use faer::c64;
 use std::cell::{Cell, RefCell};
 
 /// Operations that one search may take, transition matrices included: a second or two.
@@ -21,10 +23,13 @@ pub struct OrbitInitialGuess<'a> {
     progress: &'a Progress<'a>,
     /// Prepared when they are first needed; `None` inside if there is nothing to prepare.
     orbits: RefCell<Option<Option<PeriodicOrbits<'a>>>>,
-    /// Frequency and start of the last orbit: it may be asked for again with more harmonics.
-    last: RefCell<Option<(f64, State)>>,
+    /// Frequency and start of the last orbit, which may be asked for again with more harmonics, and whether
+    /// it is one of many.
+    last: RefCell<Option<(f64, State, bool)>>,
     /// Frequency at which no orbit was found last: a longer search is not granted, and none is repeated.
     missed: Cell<f64>,
+    /// Frequency and motion that settled last, if one did: it is asked for with many numbers of harmonics.
+    settled: RefCell<Option<(f64, Option<Settled>)>>,
 }
 
 impl<'a> OrbitInitialGuess<'a> {
@@ -45,6 +50,7 @@ impl<'a> OrbitInitialGuess<'a> {
             orbits: RefCell::new(None),
             last: RefCell::new(None),
             missed: Cell::new(f64::NAN),
+            settled: RefCell::new(None),
         }
     }
 
@@ -67,9 +73,10 @@ impl ExactOrbits for OrbitInitialGuess<'_> {
         }
         let found = self.with(|orbits| {
             orbits.report_up_to(highest);
-            let last = self.last.take().filter(|(known, _)| *known == omega);
-            let found = orbits.solve(omega, last.as_ref().map(|(_, start)| start)).ok()?;
-            self.last.replace(found.start().cloned().map(|start| (omega, start)));
+            let last = self.last.take().filter(|(known, ..)| *known == omega);
+            let found = orbits.solve(omega, last.as_ref().map(|(_, start, _)| start)).ok()?;
+            let many = found.neutral > 0;
+            self.last.replace(found.start().cloned().map(|start| (omega, start, many)));
             (found.response.status == PointStatus::Converged).then_some(found.response)
         });
         if found.is_none() {
@@ -84,5 +91,22 @@ impl ExactOrbits for OrbitInitialGuess<'_> {
             system.check_pace(self.model, omega, FASTEST).ok()?;
             Some(orbit_price(system, orbits.half_wave(), omega, events, highest))
         })
+    }
+
+    fn settled(&self, omega: f64, highest: usize) -> Option<Vec<c64>> {
+        if self.with(|_| Some(())).is_some() {
+            return None;
+        }
+        let mut settled = self.settled.borrow_mut();
+        if settled.as_ref().is_none_or(|(known, _)| *known != omega) {
+            let found = Settled::of(self.model, omega, PATIENCE, self.progress);
+            *settled = Some((omega, found));
+        }
+        let (_, found) = settled.as_ref()?;
+        found.as_ref().map(|motion| motion.amplitudes(highest))
+    }
+
+    fn is_one_of_many(&self, omega: f64) -> bool {
+        self.last.borrow().as_ref().is_some_and(|(known, _, many)| *known == omega && *many)
     }
 }

@@ -94,6 +94,13 @@ class Status(Ending):
         "small steps, ground the body, if softly, raise preload or friction, or see with transient "
         "where it goes.",
     )
+    HISTORY = (
+        "history",
+        "Not solved: contacts slip until they stick for good, and which of the tractions that "
+        "Coulomb allows they keep then depends on how the motion was reached; none that the "
+        "balance assumes agrees with it. See one such motion with exact_response, or follow the "
+        "history with transient from the state at rest.",
+    )
 
     @property
     def solved(self) -> bool:

@@ -75,6 +75,11 @@ impl Cycle {
         self.stretches.iter().any(|stretch| of(&stretch.state))
     }
 
+    /// Whether it slips in the only direction that there is, against friction.
+    fn rubs(&self) -> bool {
+        self.has(|state| matches!(state, State::Along(sign) if *sign != 0.0))
+    }
+
     /// Products of the basis, integrated over stretches with their weights, row by row.
     fn products(
         &self,
@@ -123,7 +128,7 @@ impl Cycle {
                 }
             });
         }
-        if self.has(|state| matches!(state, State::Along(_))) {
+        if self.rubs() {
             let limit = drive.limit();
             let weight = |state: &State| if let State::Along(sign) = state { *sign } else { 0.0 };
             self.products(drive, weight, |i, row| {
@@ -303,7 +308,7 @@ impl Cycle {
         for summary in tangential.iter_mut() {
             summary.slip_fraction = (1.0 - open - stuck).max(0.0);
         }
-        if self.has(|state| matches!(state, State::Along(_))) {
+        if self.rubs() {
             tangential[0].dissipation = (self.work_along(drive) / stiffness).max(0.0);
         }
         for stretch in &self.stretches {

@@ -17,7 +17,9 @@ use crate::contact::law::HarmonicForce;
 use crate::contact::parameter::number;
 use crate::contact::return_map::ReturnMapJacobian;
 use crate::contact::slip_element::Element;
-use crate::contact::{AssumedStart, ContactLaw, Held, Motion, Parameter, Parameters, Unslipped};
+use crate::contact::{
+    AssumedStart, ContactLaw, Describing, Held, Motion, Parameter, Parameters, Unslipped,
+};
 use crate::Error;
 use faer::Mat;
 use std::sync::Arc;
@@ -293,6 +295,12 @@ impl ContactLaw for Coulomb {
     fn elements(&self) -> Option<Vec<Element>> {
         let components = (0..self.displacements()).collect();
         Some(vec![Element { components, law: Arc::new(*self) }])
+    }
+
+    fn describing(&self, amplitude: f64) -> Option<Describing> {
+        let limit = self.friction * self.normal_at_rest();
+        let is_jenkins = self.directions == 1 && self.normal_stiffness.is_none();
+        is_jenkins.then(|| Describing::of_jenkins(self.tangential_stiffness, limit, amplitude))
     }
 
     fn parameters(&self) -> Vec<Parameter> {

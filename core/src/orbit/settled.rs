@@ -1,0 +1,77 @@
+//! Motions that settle in time: starts for harmonic balances with laws that have no events, and so no
+//! exact orbits.
+
+use crate::model::Model;
+use crate::motion::{transient, ModalSystem, Scheme, TransientSettings};
+use crate::progress::Progress;
+use faer::c64;
+use std::f64::consts::TAU;
+
+/// Most periods that are followed, and change over the last one of a motion that has settled.
+const PERIODS: usize = 300;
+const SETTLED: f64 = 1e-3;
+/// Steps of Runge and Kutta in the time in which the fastest mode turns by one radian, and fewest steps per
+/// period.
+const STEPS: f64 = 2.0;
+const FEWEST: usize = 128;
+/// Samples of the last period.
+const SAMPLES: usize = 256;
+
+/// The last period of a motion from rest.
+pub(super) struct Settled {
+    /// Displacements of the contacts, instant after instant \[m\].
+    displacement: Vec<f64>,
+    contacts: usize,
+}
+
+impl Settled {
+    /// The motion at a frequency [rad/s]; nothing if it does not settle, or would take more than so many
+    /// `operations`.
+    pub(super) fn of(
+        model: &Model,
+        omega: f64,
+        operations: f64,
+        progress: &Progress<'_>,
+    ) -> Option<Self> {
+        if model.is_travelling_wave() {
+            return None;
+        }
+        let system = ModalSystem::marched(model).ok()?;
+        let steps = ((STEPS * TAU * system.rate(omega) / omega).ceil() as usize).max(FEWEST);
+        let contacts = system.points();
+        let stage = (2 * system.modes() * (contacts + 1)) as f64;
+        if 4.0 * stage * (steps * PERIODS) as f64 > operations {
+            return None;
+        }
+        let settings = TransientSettings {
+            omega,
+            scheme: Scheme::RungeKutta(steps),
+            periods: PERIODS,
+            tolerance: Some(SETTLED),
+            samples: SAMPLES,
+            keep: Some(1),
+        };
+        let history = transient(model, &settings, None, &[], progress).ok()?;
+        let mut displacement = history.trace.contact_displacement;
+        // The end of the period is its beginning.
+        displacement.truncate(SAMPLES * contacts);
+        let whole = displacement.len() == SAMPLES * contacts;
+        (history.settled && whole).then_some(Self { displacement, contacts })
+    }
+
+    /// Amplitudes U_k of the contact displacements, k = 0..=highest, contact after contact.
+    pub(super) fn amplitudes(&self, highest: usize) -> Vec<c64> {
+        let mut amplitudes = vec![c64::new(0.0, 0.0); self.contacts * (highest + 1)];
+        for (j, instant) in self.displacement.chunks_exact(self.contacts).enumerate() {
+            for k in 0..=highest.min(SAMPLES / 2 - 1) {
+                let share = if k == 0 { 1.0 } else { 2.0 } / SAMPLES as f64;
+                let turn = TAU * (j * k % SAMPLES) as f64 / SAMPLES as f64;
+                let wave = c64::new(share * turn.cos(), -share * turn.sin());
+                for (point, u) in instant.iter().enumerate() {
+                    amplitudes[point * (highest + 1) + k] += wave * u;
+                }
+            }
+        }
+        amplitudes
+    }
+}
