@@ -214,6 +214,17 @@ def test_no_estimate_goes_on_where_a_discarded_harmonic_meets_a_narrow_mode(
     assert bool(beside) == go_on
 
 
+def test_disks_estimate_at_every_point() -> None:
+    """Discarded harmonics meet modes of other nodal diameters than the loads do."""
+    blade = ss.reference.beam_ring(6, coupling=7e3, engine_order=1)
+    omega = np.linspace(186.0, 190.0, 11)
+    for disk in (blade, blade.mistuned(np.linspace(-0.02, 0.02, 6))):
+        frf = ss.forced_response(disk, omega, 1)
+        errors = np.array([frf.error_estimate(dof) for dof in frf.dofs])
+        assert (errors > 0.0).all()
+        assert carried_on(errors) == []
+
+
 @pytest.mark.slow
 def test_loaded_and_named_dofs_drive_automatic_harmonics_and_steps() -> None:
     blade = ss.reference.turbine_blade()

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 import stickslip as ss
+from stickslip.analyses.profile import _walked_end
 
 TRUE = {"stiffness": 2.1e7, "slip_force": 200.0}
 BEAM = ss.reference.snecma_beam()
@@ -99,6 +102,17 @@ def test_intervals_do_not_depend_on_where_in_a_valley_the_fit_ends():
         for name in ("pad.stiffness", "damping.stiffness"):
             assert found[name] == pytest.approx(wide[name], rel=1e-4)
         assert found["pad.slip_force"] == pytest.approx((wide["pad.slip_force"][0], highest))
+
+
+def test_a_walk_that_does_not_leave_the_best_fit_has_no_end():
+    class Narrow:
+        """A misfit that rises at once."""
+
+        def at(self, place):
+            misfit = 1e10 * abs(place[0] - 0.5)
+            return SimpleNamespace(misfit=misfit)
+
+    assert _walked_end(Narrow(), np.array([0.5]), 0, 1, 1.0) is None
 
 
 @pytest.mark.slow

@@ -73,5 +73,13 @@ def test_stalled_points_name_the_contacts_that_are_nearly_rigid() -> None:
     assert told.data["points"] == 1
     assert 1e8 < told.data["ratio"] < 1e9
     assert str(told).startswith("Nearly rigid: 'jenkins'")
+    # A further contact that never slips does not make the motion one of many.
+    model = sliding(6, 2, 1e7)
+    held = ss.Jenkins("x5", stiffness=1e3, slip_force=1e3)
+    frf = ss.forced_response(
+        ss.Model(model.structure, [*model.contacts, held], model.forces), [20.0], 7
+    )
+    assert frf.status[0] == "stalled"
+    assert "rigid-contacts" in [one.code for one in frf.diagnostics]
     solved = ss.forced_response(sliding(6, 2, 1e5), [20.0], 7)
     assert not any(one.code == "rigid-contacts" for one in solved.diagnostics)

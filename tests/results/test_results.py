@@ -280,7 +280,7 @@ def test_settings():
 
 
 def test_status():
-    assert [status.code for status in ss.Status] == [0, 1, 2, 3, 4, 5, 6, 7, 8, 9]
+    assert [status.code for status in ss.Status] == list(range(11))
     assert all(ss.Status.from_code(status.code) is status for status in ss.Status)
     assert ss.Status.STALLED == "stalled"
     solved = {
@@ -292,7 +292,7 @@ def test_status():
     assert {status for status in ss.Status if status.solved} == solved
     for status in ss.Status:
         assert status.advice.count(". ") == 1
-    for code in (10, -1):
+    for code in (11, -1):
         with pytest.raises(ss.ModelError, match=f"status {code} is unknown"):
             ss.Status.from_code(code)
 

@@ -75,7 +75,7 @@ impl Estimated {
     }
 }
 
-/// The last two points with estimates of their own, as long as there is none between or after them without.
+/// The last two points with estimates of their own; at most one point without lies between them.
 #[derive(Default)]
 pub(super) struct SmoothPiece {
     before: Option<(f64, Vec<f64>)>,

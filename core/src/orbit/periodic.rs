@@ -28,6 +28,8 @@ pub(super) const FASTEST: f64 = 3e4;
 
 /// Closing error, relative to the motion, of an orbit.
 const CLOSED: f64 = 1e-10;
+/// The same of one that another step of Newton's method closes.
+const NEARLY: f64 = 1e-6;
 
 /// Error of a multiplier.
 const ROUNDING: f64 = 1e-8;
@@ -197,9 +199,12 @@ impl<'a> PeriodicOrbits<'a> {
             return Ok(self.empty(omega, PointStatus::NotComputed));
         }
         let mut read = self.read(&mut shooting, omega, &y);
+        if read.closing.is_nan() && shooting.interrupted() {
+            return Ok(self.empty(omega, PointStatus::NotComputed));
+        }
         // The last step of Newton's method was not looked at.
         if read.error > self.newton().tolerance
-            && read.closing <= CLOSED
+            && read.closing <= NEARLY
             && chosen == Chosen::Inside
         {
             let mut closer = y.clone();

@@ -8,7 +8,7 @@ use crate::contact::Residual;
 use crate::model::Model;
 use crate::motion::{is_passive, ModalSystem};
 use crate::Error;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// How orbits are prepared.
 #[derive(Clone)]
@@ -18,6 +18,8 @@ pub(super) struct Plan<'a> {
     pub(super) with_history: Option<Arc<Model>>,
     /// Whether static loads carry a body away that contacts alone hold.
     pub(super) carried_away: bool,
+    /// Whether they let go of it, once it is asked for.
+    let_go: Arc<OnceLock<bool>>,
     pub(super) system: Arc<ModalSystem>,
     pub(super) settings: OrbitSettings,
     pub(super) observe: &'a [usize],
@@ -47,6 +49,7 @@ impl<'a> Plan<'a> {
             model,
             with_history,
             carried_away: unsupported && is_carried_away(model),
+            let_go: Arc::default(),
             system,
             settings,
             observe,
@@ -60,6 +63,7 @@ impl<'a> Plan<'a> {
     /// Whether static loads, raised from rest, let go of a body that contacts alone hold.
     pub(super) fn is_let_go(&self) -> bool {
         let from_rest = self.settings.residual == Residual::FromRest;
-        from_rest && self.with_history.is_none() && is_let_go(self.model)
+        let asked = from_rest && self.with_history.is_none();
+        asked && *self.let_go.get_or_init(|| is_let_go(self.model))
     }
 }

@@ -75,7 +75,8 @@ impl ExactOrbits for OrbitInitialGuess<'_> {
             orbits.report_up_to(highest);
             let last = self.last.take().filter(|(known, ..)| *known == omega);
             let found = orbits.solve(omega, last.as_ref().map(|(_, start, _)| start)).ok()?;
-            let many = found.neutral > 0;
+            // Of laws with constant limits sliders at rest leave the vibration as it is.
+            let many = orbits.depends_on_sliders() && found.neutral > 0;
             self.last.replace(found.start().cloned().map(|start| (omega, start, many)));
             (found.response.status == PointStatus::Converged).then_some(found.response)
         });

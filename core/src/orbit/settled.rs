@@ -40,7 +40,7 @@ impl Settled {
         let steps = ((STEPS * TAU * system.rate(omega) / omega).ceil() as usize).max(FEWEST);
         let contacts = system.points();
         let stage = (2 * system.modes() * (contacts + 1)) as f64;
-        if 4.0 * stage * (steps * PERIODS) as f64 > operations {
+        if 4.0 * stage * steps as f64 * PERIODS as f64 > operations {
             return None;
         }
         let settings = TransientSettings {

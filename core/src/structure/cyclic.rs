@@ -314,6 +314,11 @@ impl Compliance for CyclicCompliance {
         &self.outline
     }
 
+    /// The outline knows the nodal diameters of the loads alone; discarded harmonics see others.
+    fn is_clear(&self, _range: [f64; 2]) -> bool {
+        false
+    }
+
     fn effort(&self, observed: usize) -> [f64; 2] {
         // All nodal diameters are much alike; this one has been decomposed.
         let harmonic = self.outline.forced.first().copied().unwrap_or(1);

@@ -1,8 +1,9 @@
 //! What the modes of the stuck structure answer to forces at the harmonics of a frequency.
 
-use super::contact_coordinates::{ContactCoordinates, Inverse, ModalOrders, Order};
+use super::contact_coordinates::ContactCoordinates;
 use super::contact_modes::ContactModes;
 use super::contact_shapes::{displace, excite, gather, ContactShapes};
+use super::modal_orders::{Inverse, ModalOrders, Order};
 use super::quasi_static::QuasiStatic;
 use crate::solve::{gmres, KrylovSettings};
 use crate::Error;

@@ -5,8 +5,8 @@
 //! takes. So numbers of single precision do, each matrix in its own unit: they are half as many bytes,
 //! and with many contacts it is the memory that a product waits for.
 
-use super::contact_coordinates::ModalOrders;
 use super::contact_shapes::{displace, excite, gather};
+use super::modal_orders::ModalOrders;
 use faer::{Mat, MatRef};
 
 /// A structure at its contacts, or at some of them, roughly.
@@ -108,7 +108,7 @@ impl QuasiStatic {
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests {
-    use super::super::contact_coordinates::{Inverse, Order};
+    use super::super::modal_orders::{Inverse, Order};
     use super::*;
     use faer::c64;
 

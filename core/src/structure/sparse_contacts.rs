@@ -2,9 +2,10 @@
 //! follows from one sparse factorisation per harmonic and frequency, in time that grows as the
 //! structure does. No mode is known, and none is needed.
 
-use super::contact_coordinates::{ContactCoordinates, Inverse, ModalOrders, Order};
+use super::contact_coordinates::ContactCoordinates;
 use super::contact_shapes::{ContactShapes, SparseRows};
 use super::flexibility::RIGID_BODY;
+use super::modal_orders::{Inverse, ModalOrders, Order};
 use super::modes::resonates;
 use super::ports::{HarmonicLoad, Ports};
 use super::sparse_matrices::{at, fill, pattern, Sparse};

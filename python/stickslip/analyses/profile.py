@@ -69,14 +69,15 @@ def profile_ends(
         end = _newton_end(misfit, best, place, sign, limit, variance * quantile**2)
         ends[place, sign] = end or _walked_end(misfit, best, place, sign, limit)
         told(number / len(sides))
+    beside = dict(ends)
     for valley, sign in sides:
-        closed, other = ends[valley, sign], ends[valley, -sign]
+        closed, other = beside[valley, sign], beside[valley, -sign]
         if closed is None or not closed.found or other is None or other.found:
             continue
         for place, side in sides:
             end = _newton_end(misfit, closed.at, place, side, limit, variance * quantile**2)
             known = ends[place, side]
-            if end and known and side * (end.at[place] - known.at[place]) > 0.0:
+            if end and (known is None or side * (end.at[place] - known.at[place]) > 0.0):
                 ends[place, side] = end
     low, high, found = start.low.copy(), start.high.copy(), start.found.copy()
     for (place, sign), known in ends.items():
@@ -122,7 +123,7 @@ def _walked_end(misfit: Misfit, best: Float, place: int, sign: int, limit: float
     None if the misfit is not below the limit beside the best fit.
     """
     others = np.arange(best.size) != place
-    inside, step = best.copy(), _WALK
+    inside, step, moved = best.copy(), _WALK, False
     while step > _CLOSE:
         there = inside.copy()
         there[place] = np.clip(inside[place] + sign * step, 0.0, 1.0)
@@ -132,10 +133,10 @@ def _walked_end(misfit: Misfit, best: Float, place: int, sign: int, limit: float
         if least > limit:
             step *= 0.5
             continue
-        inside = there
+        inside, moved = there, True
         if inside[place] in (0.0, 1.0):
             return _End(inside, False)
-    return _End(inside, True) if inside is not best else None
+    return _End(inside, True) if moved else None
 
 
 def _decrement(jacobian: Float, gradient: Float) -> float:

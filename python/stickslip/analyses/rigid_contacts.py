@@ -38,6 +38,7 @@ def rigid_contacts(model: Model, arrays: Arrays) -> Diagnostic | None:
         _names=listed(rigid),
         contact=most,
         ratio=ratios[most],
+        _limit=RIGID,
         points=stalled,
         _are="point" if stalled == 1 else "points",
     )

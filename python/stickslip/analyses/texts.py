@@ -95,8 +95,9 @@ TEXTS = {
     "law-not-monotone": "The contact law {_laws} is not monotone in the motion: the solution may "
     "be unstable or not the only one.",
     "rigid-contacts": "Nearly rigid: {_names}, up to {ratio:.1e} times as stiff as the structure "
-    "there, and {points} {_are} stalled. Up to 1e6 times motions are found, by exact_response and "
-    'harmonics="auto" first; they differ from rigid ones by some thousandths.',
+    "there, and {points} {_are} stalled. Up to {_limit:.0e} times as stiff, motions are found. "
+    "Lower the stiffness, which changes the motion by some thousandths, or try exact_response or "
+    'harmonics="auto".',
     "free-flight": "Nothing touches {body!r} during {share:.0%} of the period at omega = "
     "{omega:.6g} rad/s: all contacts that hold it are open at once, and in free flight neither "
     "stiffness nor damping decides where it goes; raise its load, or check the motion in time.",
