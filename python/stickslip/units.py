@@ -168,7 +168,15 @@ def _factor(given: str, unit: str, text: str, entry: str) -> float:
         return float(one.to(unit).magnitude)
     except DimensionalityError:
         raise _refusal(text, unit, entry, f"is not {_kind(unit)}") from None
-    except (PintError, ValueError, TypeError, ArithmeticError, SyntaxError, TokenError):
+    except (
+        PintError,
+        ValueError,
+        TypeError,
+        ArithmeticError,
+        SyntaxError,
+        TokenError,
+        AssertionError,
+    ):
         # what pint's expression reader raises on a malformed unit depends on the malformation
         raise _refusal(text, unit, entry, f"has an unknown unit {brief(given)}") from None
 

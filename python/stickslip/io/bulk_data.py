@@ -76,6 +76,8 @@ def cards(lines: Iterable[str], names: Container[str]) -> Iterator[tuple[str, li
         head = (text.partition(",")[0] if "," in text else text[:_HEAD]).strip()
         if head and head[0] not in "+*":
             if found:
+                if not head[0].isalpha():
+                    raise ValueError(f"line {text[:40]!r} is no card and continues none")
                 yield found
             name = head.rstrip("*").rstrip().upper()
             found = (name, []) if name in names else None

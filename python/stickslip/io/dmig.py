@@ -42,6 +42,10 @@ def read_dmig(path: Path, key: Key) -> Labelled:
     for _, fields in cards(text.splitlines(), ("DMIG",)):
         name = fields[0].upper()
         if fields[1] == "0":
+            if any(fields[8:]):
+                raise ValueError(
+                    f"matrix {name!r}: its first card has entries; a column is missing"
+                )
             if name in matrices:
                 raise ValueError(f"matrix {name!r} is given twice")
             matrices[name] = _Entries(whole_field(fields[2]), whole_field(fields[3]))
@@ -85,5 +89,10 @@ def _matrix(name: str, entries: _Entries, index: dict[_Place, int]) -> Sparse:
     columns = np.array([index[place] for place in entries.columns], dtype=np.int64)
     values = np.array(entries.values)
     if entries.form == 6:
-        return square_matrix(rows, columns, values, len(index))
+        made = square_matrix(rows, columns, values, len(index))
+        if (made - made.T).count_nonzero():
+            raise ValueError(
+                f"matrix {name!r} is symmetric (form 6), but its mirror entries differ"
+            )
+        return made
     return whole_matrix((len(index),) * 2, rows, columns, values, "general")

@@ -116,7 +116,9 @@ def square_matrix(
     if mirrored.any() and not mirrored.all():
         row, column = (int(index[off][~mirrored][0]) + 1 for index in (rows, columns))
         raise ValueError(f"entry ({row}, {column}) lacks its mirror entry; the file is not whole")
-    if not mirrored.any():
+    whole = _mirrored((size, size), rows, columns, values, 0 if mirrored.any() else 1)
+    # A matrix that is not symmetric, gyroscopic terms, may have no diagonal.
+    if (whole - whole.T).count_nonzero() == 0:
         diagonal = np.zeros(size)
         diagonal[rows[~off]] = values[~off]
         touched = np.union1d(rows[off & (values != 0.0)], columns[off & (values != 0.0)])
@@ -125,7 +127,7 @@ def square_matrix(
             raise ValueError(
                 f"row {int(bare[0]) + 1} has entries but no diagonal; the file is not whole"
             )
-    return _mirrored((size, size), rows, columns, values, 0 if mirrored.any() else 1)
+    return whole
 
 
 def _mirrored(

@@ -18,6 +18,7 @@ from stickslip.io.entries import Sparse, columns_of, whole_matrix
 from stickslip.io.numbers import real_field, require_whole_numbers, whole_field
 from stickslip.io.source import read_text
 
+_CUT_EXPONENT = re.compile(r"[EeDd][+-]?\d$")
 _FORMAT = re.compile(
     r"\(\s*(?P<scale>[0-9]+\s*P\s*,?\s*)?(?P<repeat>[0-9]*)\s*(?P<kind>[IEDFG])"
     r"\s*(?P<width>[0-9]+)",
@@ -68,7 +69,14 @@ class _Columns:
         return np.fromiter(map(whole_field, self.fields(lines, count)), np.int64, count)
 
     def reals(self, lines: list[str], count: int) -> NDArray[np.float64]:
-        return np.fromiter(map(real_field, self.fields(lines, count)), np.float64, count)
+        return np.fromiter(map(_real, self.fields(lines, count)), np.float64, count)
+
+
+def _real(word: str) -> float:
+    """Return a number; a Fortran format writes two digits of an exponent and more."""
+    if _CUT_EXPONENT.search(word):
+        raise ValueError(f"number {word!r} has a cut exponent; the file is not whole")
+    return real_field(word)
 
 
 def read_harwell_boeing(path: Path) -> Sparse:
