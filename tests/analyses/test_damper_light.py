@@ -126,3 +126,16 @@ def test_wording_of_one_and_of_several() -> None:
     assert text.startswith(f"Harmonics up to {curve.harmonics[0]} were kept, chosen at each peak")
     best = ss.optimal_damper(light(0.01, 5.0), dof="tip")
     assert "1 local minimum)" in repr(best)
+
+
+def test_default_bounds_hold_the_optimum_of_a_load_that_hardly_reaches_the_damper():
+    """Weak springs pass little of the load on away from resonance, at which all of it arrives."""
+    springs = 1e4 * np.diag([1.0077, 1.0139, 1.0136, 1.0157, 1.0074])
+    springs -= 67.8 * (np.eye(5, k=1) + np.eye(5, k=-1))
+    structure = ss.Structure(np.eye(5), springs, ss.ModalDamping(1e-5), list("abcde"))
+    damper = ss.Jenkins("a", stiffness=7.5e4, slip_force=1.0)
+    model = ss.Model(structure, [damper], [ss.Force("e", 1.0)])
+    found = ss.optimal_damper(model, dof="b", harmonics=1)
+    assert not found.at_bound
+    curve = ss.damper_curve(model, slip_force=np.geomspace(1e-4, 100.0, 25), dof="b", harmonics=1)
+    assert found.amplitude <= np.nanmin(curve.amplitude) * (1.0 + 1e-6)

@@ -73,31 +73,46 @@ def optimal_damper(
             "highest)"
         )
     kept = settings_for(model, variation, np.array(given or (1.0,)), settings)
-    low, high = given or _load_bounds(model, variation, kept)
+    spans = [given] if given else _load_bounds(model, variation, kept)
     with Run("optimal damper", progress, model) as run:
-        with refusals(model):
-            minima, peaks = _core.optimal_damper(
-                model.problem,
-                variation.varied(model),
-                model.structure.index(kept.dof),
-                (low, high),
-                kept,
-                run,
-            )
-        curve = curve_of(model, kept, (DamperArrays.of(peaks), peaks))
-        if curve.interrupted:
-            raise stopped("optimal damper", f"{curve.values.size} peaks", curve)
-        rows = zip(*(minima.columns[name] for name in LeastPeak._fields), strict=True)
-        found = tuple(LeastPeak(*map(float, row)) for row in rows)
-        if not found:
-            raise ModelError(
-                f"optimal damper: {curve.arrays.solved.sum()} peaks were found between {low:g} and "
-                f"{high:g}, none of them a minimum; try other bounds, or damper_curve for the "
-                "status of each value"
-            )
-        result = OptimalDamper.of(found, (low, high), curve, ())
-        result = replace(result, diagnostics=_diagnostics(result))
+        result = _least(model, variation, kept, spans[0], run)
+        # The scale of the load is too small where the structure hardly passes it on to contacts.
+        if result.at_bound and spans[1:]:
+            result = _least(model, variation, kept, spans[1], run)
         return run.completed(result, "optimal damper")
+
+
+def _least(
+    model: Model,
+    variation: Variation,
+    settings: DamperSettings,
+    bounds: tuple[float, float],
+    run: Run,
+) -> OptimalDamper:
+    """Return the least peak between two bounds."""
+    with refusals(model):
+        minima, peaks = _core.optimal_damper(
+            model.problem,
+            variation.varied(model),
+            model.structure.index(settings.dof),
+            bounds,
+            settings,
+            run,
+        )
+    curve = curve_of(model, settings, (DamperArrays.of(peaks), peaks))
+    if curve.interrupted:
+        raise stopped("optimal damper", f"{curve.values.size} peaks", curve)
+    rows = zip(*(minima.columns[name] for name in LeastPeak._fields), strict=True)
+    found = tuple(LeastPeak(*map(float, row)) for row in rows)
+    if not found:
+        low, high = bounds
+        raise ModelError(
+            f"optimal damper: {curve.arrays.solved.sum()} peaks were found between {low:g} and "
+            f"{high:g}, none of them a minimum; try other bounds, or damper_curve for the "
+            "status of each value"
+        )
+    result = OptimalDamper.of(found, bounds, curve, ())
+    return replace(result, diagnostics=_diagnostics(result))
 
 
 def _diagnostics(result: OptimalDamper) -> tuple[Diagnostic, ...]:
@@ -121,8 +136,8 @@ def _stiffness_bounds(model: Model, variation: Variation) -> tuple[float, float]
 
 def _load_bounds(
     model: Model, variation: Variation, settings: DamperSettings
-) -> tuple[float, float]:
-    """Return bounds around the scale of the load."""
+) -> list[tuple[float, float]]:
+    """Return bounds around the scale of the load, and to where nothing slips if that is farther."""
     load, ratio = _stuck_forces(model, variation, settings)
     if not ratio > 0.0:
         raise ModelError(
@@ -130,9 +145,13 @@ def _load_bounds(
             "check the forces, or give bounds=(lowest, highest)"
         )
     low, high = SLIDES * ratio, STICKS * ratio
+    spans = [(low, high)]
     if load > 0.0:
-        low, high = min(low, LOAD[0] * load), min(high, LOAD[1] * load)
-    return (1.0 / high, 1.0 / low) if variation.parameter == "level" else (low, high)
+        low = min(low, LOAD[0] * load)
+        spans = [(low, min(high, LOAD[1] * load)), (low, high)]
+    by_level = variation.parameter == "level"
+    spans = [(1.0 / high, 1.0 / low) if by_level else (low, high) for low, high in spans]
+    return spans[:1] if spans[0] == spans[-1] else spans
 
 
 def _factor(model: Model, contacts: Iterable[Chosen]) -> float:
