@@ -77,6 +77,29 @@ def test_refused_models():
         ss.design_map(pair, values, dof="left.x", omega=(95.0, 95.0))
 
 
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        ({"build": 3}, "build: 3 cannot be called"),
+        ({"build": lambda mass: None}, "build: .*angle"),
+        ({"parameters": {"mass": [], "angle": [60.0]}}, "'mass' has no values"),
+        ({"omega": 150.0}, "omega: 150.0 is not a list"),
+        ({"omega": []}, "give 0 < from < to"),
+        ({"omega": (90.0, 95.0, 100.0)}, "give 0 < from < to"),
+        ({"points": 2}, "points"),
+        ({"points": "x"}, "points"),
+        ({"points": 10**30}, "points"),
+        ({"threads": -3}, "threads"),
+        ({"threads": "two"}, "threads"),
+    ],
+)
+def test_refused_arguments(wrong, message):
+    given = {"build": pair, "parameters": {"mass": [0.1], "angle": [60.0]}}
+    given |= {"dof": "left.x", "omega": (95.0, 120.0)} | wrong
+    with pytest.raises(ss.ModelError, match=message):
+        ss.design_map(**given)
+
+
 def test_speed_changes_loads_and_stiffness():
     """A linear blade that stiffens, and the wedge whose load grows with the square of the speed."""
     blade = ss.Structure([[1.0]], [[4e4]], [[4.0]], ["x"])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from inspect import signature
 from os import cpu_count
 
 import numpy as np
@@ -10,12 +11,23 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip import _core
 from stickslip.analyses.run import refusals
-from stickslip.checks import brief, members, real_matrix, real_number, set_fields, text
+from stickslip.checks import (
+    brief,
+    members,
+    real_matrix,
+    real_number,
+    set_fields,
+    text,
+    whole_number,
+)
 from stickslip.errors import ModelError
 from stickslip.model import Model, Structure
 from stickslip.results.design_map import DesignMap
 from stickslip.settings.peaks import PeakSettings
 from stickslip.units import physical_number
+
+_MOST_POINTS = 1_000_000
+"""Frequencies of a coarse grid that nobody needs."""
 
 
 def design_map(
@@ -66,12 +78,15 @@ def design_map(
         If there are not two parameters with values, or a value makes no model.
     """
     names, values = _two(parameters)
-    low, high = sorted(physical_number(one, "rad/s", "omega") for one in omega)
-    if not 0.0 < low < high or points < 3:
-        raise ModelError(
-            f"omega: {brief(omega)} with {points} points; give 0 < from < to, 3 points"
-        )
-    span = np.linspace(low, high, points)
+    _require_callable(build, names)
+    points = whole_number(points, "points", smallest=3, largest=_MOST_POINTS)
+    if threads is not None:
+        threads = whole_number(threads, "threads", smallest=1)
+    ends = members(omega, "omega", "(95.0, 120.0)")
+    numbers = sorted(physical_number(one, "rad/s", "omega") for one in ends)
+    if len(numbers) != 2 or not 0.0 < numbers[0] < numbers[1]:
+        raise ModelError(f"omega: {brief(omega)}; give 0 < from < to")
+    span = np.linspace(numbers[0], numbers[1], points)
     cells = [(one, other) for one in values[0] for other in values[1]]
     models = []
     for cell in cells:
@@ -99,10 +114,25 @@ def _two(parameters: object) -> tuple[tuple[str, str], tuple[NDArray[np.float64]
             f'parameters: {brief(parameters)}; give two, {{"mass": [...], "angle": [...]}}'
         )
     first, second = (text(name, "parameters") for name in parameters)
-    return (first, second), tuple(
+    found = tuple(
         np.array([real_number(one, name) for one in members(values, name, "[0.05, 0.1]")])
         for name, values in parameters.items()
     )
+    for name, values in zip((first, second), found, strict=True):
+        if not values.size:
+            raise ModelError(f"parameters: {name!r} has no values; give at least one")
+    return (first, second), found
+
+
+def _require_callable(build: object, names: tuple[str, str]) -> None:
+    first, second = names
+    remedy = f"give a function of {first!r} and {second!r} that returns a Model"
+    if not callable(build):
+        raise ModelError(f"build: {brief(build)} cannot be called; {remedy}")
+    try:
+        signature(build).bind(**dict.fromkeys(names))
+    except TypeError as error:
+        raise ModelError(f"build: {error}; {remedy}") from None
 
 
 def spinning(
