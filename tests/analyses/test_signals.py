@@ -137,7 +137,8 @@ print(json.dumps({{n: pressed(call, None if n in late else 0.3) for n, call in c
 def test_points_that_were_not_computed_take_no_memory():
     code = """
 before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-print(pressed(lambda: ss.forced_response(snecma_beam(), np.linspace(100, 250, 1000000), 15)))
+grid = np.linspace(100, 250, 1000000)
+print(pressed(lambda tell: ss.forced_response(snecma_beam(), grid, 15, progress=tell), None))
 print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before)
 """
     kind, kilobytes = child(code).stdout.split()
