@@ -64,3 +64,11 @@ def test_natural_frequencies_keep_their_digits_beside_a_very_fast_one(damping: s
             for mass in (1e-11, 1e-14)
         ]
         np.testing.assert_allclose(slow[1], slow[0], rtol=1e-9)
+
+
+def test_a_motion_too_long_to_keep_names_the_dof_that_moves_fastest(monkeypatch) -> None:
+    monkeypatch.setattr("stickslip.memory.physical_memory", lambda: 10**8)
+    beam = ss.Structure(np.diag([1.0, 1e-7]), [[1e4, -5e3], [-5e3, 8e3]], dofs=["a", "b"])
+    model = ss.Model(beam, [ss.Jenkins("a", stiffness=1e3, slip_force=1.0)])
+    with pytest.raises(ss.ModelError, match="condense dof 'b' statically"):
+        ss.classify(model, {"a": 0.01})

@@ -17,9 +17,10 @@ from stickslip.analyses.arguments import (
 )
 from stickslip.analyses.assumptions import free_assumptions
 from stickslip.analyses.run import Progress, Run, refusals
+from stickslip.checks import brief
 from stickslip.errors import Interrupted, ModelError
 from stickslip.memory import require_numbers
-from stickslip.model import Model, natural_frequencies
+from stickslip.model import Model, Structure, natural_frequencies
 from stickslip.model.state import State
 from stickslip.results.arrays import Float, Int
 from stickslip.results.fate_arrays import Motion, Reason
@@ -133,7 +134,9 @@ def _tail_grid(model: Model, observed: int) -> tuple[float, int]:
     samples = max(64, math.ceil(SAMPLES * float(stuck[-1] / swinging[0])))
     require_numbers(
         TAIL * samples * (2 * observed + 2 * points_of(model)),
-        f"the motion of {TAIL * samples} instants and {observed} dofs",
+        f"the motion of {TAIL * samples} instants and {observed} dofs, {SAMPLES} instants per "
+        f"period of the highest stuck mode, {stuck[-1] / swinging[0]:.2g} times the lowest,",
+        f"condense dof {brief(_fastest(model.structure))} statically, which moves fastest, or "
         "name fewer dofs with observe=[...]",
     )
     return float(swinging[0]), samples
@@ -156,3 +159,10 @@ def _tail(
             lambda _: run.heed(),
         )
     return history.columns["displacement"][1:], history.interrupted
+
+
+def _fastest(structure: Structure) -> str:
+    """Return the dof that moves fastest while all others are held."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        rates = np.diagonal(structure.stiffness) / np.diagonal(structure.mass)
+    return structure.dofs[int(np.nanargmax(rates))]
