@@ -167,16 +167,18 @@ def test_estimates_along_a_curve_are_those_of_its_frequencies(harmonics: int) ->
             assert np.median(ratio) == pytest.approx(1.0, abs=0.1)
 
 
-def carried_on(errors: np.ndarray) -> list[int]:
-    """Points of an even grid whose estimates are those that the two before them lead to."""
+def carried_on(errors: np.ndarray, in_a_row: int = 1) -> list[int]:
+    """Points of an even grid whose estimates are those that two before them lead to."""
     found, own = [], [0]
     for i in range(1, errors.shape[1]):
-        if own[-1] == i - 1 and len(own) > 1:
-            before, last = errors[:, own[-2]], errors[:, i - 1]
-            growth = (last / before) ** (1.0 / (i - 1 - own[-2]))
-            if np.allclose(errors[:, i], last * growth.clip(1.0, 1.5), rtol=1e-6, atol=0.0):
-                found.append(i)
-                continue
+        if len(own) > 1:
+            before, last = own[-2:]
+            if i - last <= min(in_a_row, last - before):
+                growth = (errors[:, last] / errors[:, before]) ** ((i - last) / (last - before))
+                goes_on = errors[:, last] * growth.clip(1.0, 1.5)
+                if np.allclose(errors[:, i], goes_on, rtol=1e-6, atol=0.0):
+                    found.append(i)
+                    continue
         own.append(i)
     return found
 
@@ -214,15 +216,48 @@ def test_no_estimate_goes_on_where_a_discarded_harmonic_meets_a_narrow_mode(
     assert bool(beside) == go_on
 
 
-def test_disks_estimate_at_every_point() -> None:
-    """Discarded harmonics meet modes of other nodal diameters than the loads do."""
-    blade = ss.reference.beam_ring(6, coupling=7e3, engine_order=1)
-    omega = np.linspace(186.0, 190.0, 11)
-    for disk in (blade, blade.mistuned(np.linspace(-0.02, 0.02, 6))):
-        frf = ss.forced_response(disk, omega, 1)
-        errors = np.array([frf.error_estimate(dof) for dof in frf.dofs])
-        assert (errors > 0.0).all()
-        assert carried_on(errors) == []
+@pytest.mark.parametrize("mistuned", [False, True])
+def test_estimates_of_disks_go_on_where_no_nodal_diameter_resonates(mistuned: bool) -> None:
+    ring = ss.reference.beam_ring(6, coupling=7e3, engine_order=1)
+    disk = ring.mistuned(np.linspace(-0.02, 0.02, 6)) if mistuned else ring
+    omega = np.linspace(186.0, 190.0, 81)
+    curve = ss.forced_response(disk, omega, 1)
+    errors = np.array([curve.error_estimate(dof) for dof in curve.dofs])
+    found = carried_on(errors, 3 if mistuned else 1)
+    assert len(found) >= 20
+    alone = [ss.forced_response(disk, omega[[i]], 1) for i in found]
+    own = np.array([[one.error_estimate(dof)[0] for one in alone] for dof in curve.dofs])
+    assert (errors[:, found] / own).min() > 0.45
+    # What falls is not followed down.
+    assert (errors[:, found] / own).max() < 2.5
+
+
+@pytest.mark.parametrize("mistuned", [False, True])
+@pytest.mark.parametrize(("damping", "go_on"), [(30.0, True), (0.01, False)])
+def test_no_estimate_of_a_disk_goes_on_where_another_nodal_diameter_resonates(
+    damping: float, go_on: bool, mistuned: bool
+) -> None:
+    ring = ss.reference.beam_ring(6, coupling=7e3, engine_order=1)
+    beam = ring.structure
+    disk = ss.BladedDisk(
+        ss.Structure(beam.mass, beam.stiffness, ss.Rayleigh(mass=damping), beam.dofs),
+        sectors=6,
+        couplings=ring.couplings,
+        contacts=ring.contacts,
+        forces=[ss.Force("tip", 300.0)],
+        engine_order=1,
+    )
+    # The third harmonic of engine order 1 sees nodal diameter 3, a mode of which it meets here.
+    middle = ss.natural_frequencies(disk, nodal_diameter=3)[0] / 3.0
+    omega = middle + 0.15 * (np.arange(61) - 56.5)
+    if mistuned:
+        disk = disk.mistuned(np.zeros(6))
+    frf = ss.forced_response(disk, omega, 1)
+    errors = np.array([frf.error_estimate(dof) for dof in frf.dofs])
+    assert (errors > 0.0).any(axis=0).all()
+    found = carried_on(errors, 3 if mistuned else 1)
+    assert len(found) >= 3
+    assert bool({56, 57}.intersection(found)) == go_on
 
 
 @pytest.mark.slow

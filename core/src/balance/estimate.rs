@@ -65,7 +65,7 @@ impl ForcedBalance<'_> {
         let solution = Unknowns { harmonics: harmonics.clone(), values: x.to_vec() };
         if beside.is_some() {
             let (discarded, of) = (whole.discarded(harmonics), self.model.compliance());
-            if let Some(errors) = self.neighbour.continued(point, &solution, of, discarded) {
+            if let Some(errors) = self.neighbour.piece.continued(point, &solution, of, discarded) {
                 point.error_estimate = errors;
                 return Ok(true);
             }

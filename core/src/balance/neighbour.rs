@@ -4,13 +4,11 @@
 //! not take longer. How much the second step of an estimate adds to the first one changes slowly along a
 //! curve: what was found at one point holds for a few after it, as long as the first step makes no contact
 //! begin or cease to slip. Where the motion but for its phase hardly changes, and no discarded harmonic
-//! comes to a mode, the estimate itself goes on as it did between the two points before, at every other point.
+//! comes to a mode, the estimate itself goes on as it did between the two points before.
 
 use super::smooth_piece::{Estimated, SmoothPiece};
 use super::solution::Point;
 use super::unknowns::Unknowns;
-use crate::structure::Compliance;
-use std::ops::Range;
 
 /// Points are beside one another up to this distance in frequency, relative to it.
 const NEAR: f64 = 0.02;
@@ -25,7 +23,7 @@ pub(super) struct Neighbour {
     /// Its error over that after the first step, of each observed DOF; empty where it is not known.
     growth: Vec<f64>,
     served: usize,
-    piece: SmoothPiece,
+    pub(super) piece: SmoothPiece,
 }
 
 impl Neighbour {
@@ -35,17 +33,6 @@ impl Neighbour {
         let suits = near && self.harmonics == point.harmonics && self.served < SERVED;
         self.served += 1;
         (suits && !self.growth.is_empty()).then(|| self.growth.clone())
-    }
-
-    /// The estimate of a point beside, if it goes on from those before.
-    pub(super) fn continued(
-        &mut self,
-        point: &Point,
-        solution: &Unknowns,
-        compliance: &dyn Compliance,
-        discarded: Range<usize>,
-    ) -> Option<Vec<f64>> {
-        self.piece.continued(point, solution, compliance, discarded)
     }
 
     /// Notes the estimate of a point, with its solution.

@@ -15,6 +15,10 @@ use std::ops::Range;
 const NEAR: f64 = 0.01;
 /// Farthest point, over the distance of the two before it.
 const STEPS: f64 = 1.01;
+/// Points in a row that go on, …
+const IN_A_ROW: usize = 1;
+/// … and on a ring, whose estimates take longer beside its solutions.
+const IN_A_ROW_OF_RING: usize = 3;
 /// Change of the motion of a contact, apart from its phase and relative to it, up to which it is the same.
 const SAME_MOTION: f64 = 0.25;
 /// The same of the share of the period in which it slips.
@@ -75,20 +79,22 @@ impl Estimated {
     }
 }
 
-/// The last two points with estimates of their own; at most one point without lies between them.
+/// The last two points with estimates of their own; few points without lie between them.
 #[derive(Default)]
 pub(super) struct SmoothPiece {
     before: Option<(f64, Vec<f64>)>,
     last: Option<Estimated>,
-    /// Whether the point behind the last one did without.
-    went_on: bool,
+    /// Points behind the last one that did without.
+    went_on: usize,
+    /// How often the compliance was asked for its modes.
+    asked: usize,
 }
 
 impl SmoothPiece {
     /// Notes a point with an estimate of its own.
     pub(super) fn note(&mut self, point: Estimated) {
         self.before = self.last.take().map(|last| (last.omega, last.errors));
-        (self.last, self.went_on) = (Some(point), false);
+        (self.last, self.went_on) = (Some(point), 0);
     }
 
     /// The estimate of a point that lies on the piece; nothing if it asks for its own.
@@ -103,7 +109,8 @@ impl SmoothPiece {
         let (behind, ahead) = (last.omega - omega, point.omega - last.omega);
         let near = ahead.abs() <= NEAR * last.omega && errors.len() == last.errors.len();
         let share = ahead / behind;
-        if self.went_on || !near || !(share > 0.0 && share <= STEPS) {
+        let in_a_row = if compliance.ring().is_some() { IN_A_ROW_OF_RING } else { IN_A_ROW };
+        if self.went_on >= in_a_row || !near || !(share > 0.0 && share <= STEPS) {
             return None;
         }
         let size = |errors: &[f64]| errors.iter().sum::<f64>();
@@ -114,9 +121,13 @@ impl SmoothPiece {
         });
         if !(smooth
             && is_within(goes_on([size(errors), size(&last.errors)]), CHANGE)
-            && last.moves_as(point, solution)
-            && is_clear([last.omega, point.omega], compliance, discarded))
+            && last.moves_as(point, solution))
         {
+            return None;
+        }
+        self.asked += 1;
+        let half_wave = solution.harmonics.half_wave();
+        if !is_clear([last.omega, point.omega], compliance, discarded, half_wave, self.asked) {
             return None;
         }
         let both = errors.iter().zip(&last.errors);
@@ -129,7 +140,7 @@ impl SmoothPiece {
                 now
             }
         });
-        self.went_on = true;
+        self.went_on += 1;
         Some(estimates.collect())
     }
 }
@@ -144,10 +155,17 @@ fn is_clear(
     [before, now]: [f64; 2],
     compliance: &dyn Compliance,
     mut discarded: Range<usize>,
+    half_wave: bool,
+    asked: usize,
 ) -> bool {
     let step = (now - before).abs();
     discarded.all(|order| {
-        compliance.is_clear([now - step, now + step].map(|omega| order as f64 * omega))
+        // A motion whose halves mirror each other has no even harmonics.
+        if half_wave && order % 2 == 0 {
+            return true;
+        }
+        let range = [now - step, now + step].map(|omega| order as f64 * omega);
+        compliance.is_clear(order, range, asked)
     })
 }
 

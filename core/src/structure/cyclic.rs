@@ -314,9 +314,9 @@ impl Compliance for CyclicCompliance {
         &self.outline
     }
 
-    /// The outline knows the nodal diameters of the loads alone; discarded harmonics see others.
-    fn is_clear(&self, _range: [f64; 2]) -> bool {
-        false
+    /// Discarded harmonics see other nodal diameters than the loads.
+    fn is_clear(&self, harmonic: usize, range: [f64; 2], asked: usize) -> bool {
+        self.wave(harmonic).is_ok_and(|wave| wave.is_clear(harmonic, range, asked))
     }
 
     fn effort(&self, observed: usize) -> [f64; 2] {

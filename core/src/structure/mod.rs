@@ -208,9 +208,10 @@ pub trait Compliance: Send + Sync {
         &self.outline().free
     }
 
-    /// Whether no mode, with the contacts stuck or removed, resonates within a range that it passes in less
-    /// than half of that [rad/s].
-    fn is_clear(&self, range: [f64; 2]) -> bool {
+    /// Whether no mode that a harmonic sees, with the contacts stuck or removed, resonates within a range that
+    /// it passes in less than half of that [rad/s]. What does not know its modes says no, until `asked`
+    /// questions before this one have cost as much as to find them.
+    fn is_clear(&self, _harmonic: usize, range: [f64; 2], _asked: usize) -> bool {
         let lists = [self.stuck_frequencies(), self.free_frequencies()];
         let known = lists.iter().any(|list| !list.is_empty());
         self.narrowest_bandwidth() >= 0.5 * (range[1] - range[0])
