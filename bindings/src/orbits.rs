@@ -3,13 +3,12 @@
 use crate::arrays::{check_samples, table};
 use crate::columns::Columns;
 use crate::problem::Problem;
-use crate::response::{curve, keeping};
+use crate::response::{curve, in_order, keeping};
 use crate::settings::{measure, orbit};
 use crate::watch::whole;
 use numpy::PyArray2;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use std::collections::HashMap;
 use std::sync::Arc;
 use stickslip_core::balance::Settings;
 use stickslip_core::design::bound_orbits;
@@ -60,10 +59,7 @@ pub fn exact_response<'py>(
             Ok(found)
         },
         |mut points| {
-            // Pieces of the sweep come as they are found.
-            let places = order.iter().enumerate().rev().map(|(place, own)| (own.to_bits(), place));
-            let places: HashMap<u64, usize> = places.collect();
-            points.sort_by_key(|orbit| places.get(&orbit.response.omega.to_bits()).copied());
+            in_order(&mut points, &order, |orbit| orbit.response.omega);
             let half_wave = model.is_symmetric() && settings.residual.is_symmetric();
             let profile = Profile::default();
             (!points.is_empty()).then_some(Orbits { points, half_wave, interrupted: true, profile })

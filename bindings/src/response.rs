@@ -8,6 +8,7 @@ use crate::watch::{given_up, watched};
 use numpy::{Complex64, PyArray1};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
+use std::collections::HashMap;
 use std::mem::take;
 use std::sync::Arc;
 use stickslip_core::balance::{
@@ -16,7 +17,7 @@ use stickslip_core::balance::{
 };
 use stickslip_core::design::bound;
 use stickslip_core::fourier::{self, Harmonics, Measure, SampleTable};
-use stickslip_core::orbit::{decide_stability, OrbitInitialGuess};
+use stickslip_core::orbit::{decide_stability, sweep_in_pieces, OrbitInitialGuess};
 use stickslip_core::solve::NewtonSettings;
 use stickslip_core::timing::Profile;
 use stickslip_core::{Error, Model};
@@ -54,12 +55,23 @@ pub fn keeping<K: Send + Sync + 'static, T: Send + 'static>(
     rest(points).ok_or_else(given_up)
 }
 
-/// Runs a sweep; Ctrl-C keeps what was solved.
+/// Brings points that were kept as they were found into the order of the frequencies.
+pub fn in_order<T>(points: &mut [Arc<T>], order: &[f64], omega: impl Fn(&T) -> f64) {
+    let places = order.iter().enumerate().rev().map(|(place, own)| (own.to_bits(), place));
+    let places: HashMap<u64, usize> = places.collect();
+    points.sort_by_key(|point| places.get(&omega(point).to_bits()).copied());
+}
+
+/// What is asked of a balance.
+type Work<'w> = dyn Fn(ForcedBalance<'_>) -> Result<balance::Solution, Error> + Sync + 'w;
+
+/// Runs a sweep, over the frequencies `order` if they were given; Ctrl-C keeps what was solved.
 fn swept<'py>(
     py: Python<'py>,
     progress: Option<Py<PyAny>>,
     observed: usize,
     model: &Arc<Model>,
+    order: &[f64],
     work: impl FnOnce(&Model, &Kept<Point>, &Progress<'_>) -> Result<balance::Solution, Error>
         + Send
         + 'static,
@@ -69,7 +81,13 @@ fn swept<'py>(
         py,
         progress,
         move |kept, look| work(&own, kept, look),
-        |points: Vec<Arc<Point>>| {
+        |mut points: Vec<Arc<Point>>| {
+            in_order(&mut points, order, |point| point.omega);
+            if !order.is_empty() {
+                // Of pieces of the sweep that are behind a gap nothing is told.
+                let both = points.iter().zip(order);
+                points.truncate(both.take_while(|(point, omega)| point.omega == **omega).count());
+            }
             let half_wave = points.first()?.unknowns()?.harmonics().half_wave();
             let profile = Profile::default();
             let end = CurveEnd::Interrupted;
@@ -131,17 +149,30 @@ pub fn forced_response<'py>(
     let stability =
         settings.getattr_opt("stability")?.map_or(Ok(false), |given| given.extract())?;
     let settings = balance_settings(settings)?;
-    swept(py, progress, observe.len(), &problem.model, move |model, kept, look| {
-        let orbits = OrbitInitialGuess::new(model, settings.residual, &observe, look);
-        let balance = ForcedBalance::new(model, settings, &observe)?
-            .watched(look)
-            .rescued(&orbits)
-            .driven_by(&driving)
-            .keeping(kept)
-            .with_further_branches();
+    let order = match &omega {
+        Frequencies::Range(_) => Vec::new(),
+        Frequencies::Grid(grid) => grid.clone(),
+    };
+    swept(py, progress, observe.len(), &problem.model, &order, move |model, kept, look| {
+        let solved = |look: &Progress<'_>, work: &Work<'_>| {
+            let orbits = OrbitInitialGuess::new(model, settings.residual, &observe, look);
+            let balance = ForcedBalance::new(model, settings, &observe)?
+                .watched(look)
+                .rescued(&orbits)
+                .driven_by(&driving)
+                .keeping(kept)
+                .with_further_branches();
+            work(balance)
+        };
         let mut found = match omega {
-            Frequencies::Range((from, to)) => sweep_range(balance, from, to),
-            Frequencies::Grid(grid) => sweep(balance, &grid),
+            Frequencies::Range((from, to)) => {
+                solved(look, &|balance| sweep_range(balance, from, to))
+            }
+            Frequencies::Grid(grid) => {
+                sweep_in_pieces(model, &settings, &grid, look, |piece, look| {
+                    solved(look, &|balance| sweep(balance, piece))
+                })
+            }
         }?;
         if stability && !model.is_monotone() {
             decide_stability(model, settings, &mut found, look)?;
@@ -169,7 +200,7 @@ pub fn single_harmonic<'py>(
         newton: NewtonSettings { max_iterations, ..NewtonSettings::default() },
         ..Settings::default()
     };
-    swept(py, progress, observe.len(), &problem.model, move |model, kept, look| {
+    swept(py, progress, observe.len(), &problem.model, &[], move |model, kept, look| {
         let balance = ForcedBalance::new(model, settings, &observe)?.watched(look).keeping(kept);
         balance::single_harmonic(balance, &omega, estimate)
     })

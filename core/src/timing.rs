@@ -44,6 +44,17 @@ impl Profile {
         self.products += part.products;
     }
 
+    /// Adds another analysis, all but the time from its first to its last point.
+    pub fn add_whole(&mut self, other: &Self) {
+        self.add(other);
+        self.recovery += other.recovery;
+        self.estimate += other.estimate;
+        self.updates += other.updates;
+        self.restarts += other.restarts;
+        self.homotopies += other.homotopies;
+        self.orbits += other.orbits;
+    }
+
     /// Runs `work` and adds its duration to `stage`.
     pub fn time<T>(stage: &mut Duration, work: impl FnOnce() -> T) -> T {
         let start = Instant::now();

@@ -50,6 +50,7 @@ pub(crate) use limit_load::{is_carried_away, is_let_go};
 pub use linearised::{Cause, Linearised};
 pub(crate) use peak::brent;
 pub use peak::refine_peak;
+pub(crate) use price::work_of_given;
 pub use settings::{
     Evaluation, HarmonicChoice, Method, Resolution, SampleChoice, Settings, HIGHEST_ORDER,
 };

@@ -5,6 +5,7 @@
 //! already done: the same point is solved in the same way everywhere.
 
 use super::modal_work::{of_step, suits};
+use super::settings::{Evaluation, HarmonicChoice, Settings};
 use crate::fourier::Harmonics;
 use crate::model::Model;
 
@@ -65,4 +66,15 @@ impl Price<'_> {
     pub(super) fn allows_homotopy(&self, order: usize) -> bool {
         self.of(order) <= (AFFORDABLE / HOMOTOPY).max(TWICE * self.of(self.lowest))
     }
+}
+
+/// Operations of a solution in which all points slip; nothing if harmonics or samples are chosen.
+pub(crate) fn work_of_given(model: &Model, settings: &Settings) -> Option<f64> {
+    let HarmonicChoice::Fixed(order) = settings.harmonics else { return None };
+    if settings.evaluation != Evaluation::Direct {
+        return None;
+    }
+    let half_wave = model.is_symmetric() && settings.residual.is_symmetric();
+    let slipping = model.compliance().contacts();
+    Some(Price { model, half_wave, slipping, lowest: order }.of(order))
 }

@@ -13,6 +13,7 @@ mod loop_memory;
 mod multipliers;
 mod period_map;
 mod periodic;
+mod pieces;
 mod plan;
 mod price;
 mod quadrature;
@@ -37,6 +38,7 @@ pub use cycle::{
 };
 pub use period_map::{Multipliers, PeriodMap};
 pub use periodic::PeriodicOrbits;
+pub use pieces::sweep_in_pieces;
 pub use rescue::OrbitInitialGuess;
 pub use rotation::Rotation;
 pub use settings::OrbitSettings;

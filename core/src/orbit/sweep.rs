@@ -2,6 +2,7 @@
 
 use super::closed::Orbit;
 use super::periodic::PeriodicOrbits;
+use super::pieces::pieces;
 use crate::balance::{brent, check_bracket, check_frequencies, over_frequencies, PointStatus};
 use crate::fourier::Measure;
 use crate::motion::State;
@@ -29,9 +30,6 @@ pub struct Orbits {
     pub profile: Profile,
 }
 
-/// Most orbits that are found one from the other where each could be found by itself.
-const PIECE: usize = 16;
-
 /// Finds the orbits at the frequencies `omega` [rad/s], in their order. Where one motion alone is possible
 /// pieces of the sweep are worked on at the same time, the same pieces with any number of threads.
 ///
@@ -41,11 +39,10 @@ pub fn orbit_sweep(orbits: PeriodicOrbits<'_>, omega: &[f64]) -> Result<Orbits, 
     let start = Instant::now();
     check_frequencies(omega)?;
     let (plan, kept) = (&orbits.plan, orbits.kept);
-    let pieces = if plan.unique { omega.len().div_ceil(PIECE) } else { 1 };
-    let ends = |piece: usize| piece * omega.len() / pieces.max(1);
-    let found = in_parts(pieces.max(1), orbits.progress, |piece, progress| {
+    let pieces = if plan.unique { pieces(omega.len()) } else { vec![0..omega.len()] };
+    let found = in_parts(pieces.len(), orbits.progress, |piece, progress| {
         let mut own = plan.clone().orbits(progress);
-        let omega = &omega[ends(piece)..ends(piece + 1)];
+        let omega = &omega[pieces[piece].clone()];
         let found = over_frequencies(
             &mut own,
             omega,
@@ -63,9 +60,7 @@ pub fn orbit_sweep(orbits: PeriodicOrbits<'_>, omega: &[f64]) -> Result<Orbits, 
         let (own, ended, spent) = piece?;
         points.extend(own);
         interrupted |= ended;
-        profile.add(&spent);
-        profile.recovery += spent.recovery;
-        profile.homotopies += spent.homotopies;
+        profile.add_whole(&spent);
     }
     if points.is_empty() {
         let empty = |&first| Arc::new(orbits.empty(first, PointStatus::NotComputed));
