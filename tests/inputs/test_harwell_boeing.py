@@ -127,7 +127,10 @@ BODY = "   1   2   2\n   2\n  5.0000E+00\n"
         (header("RSA") + "   1   2   2\n   0\n  5.0000E+00\n", "row index lies outside 1 to 2"),
         (header("RSA") + "   1   2   3\n   2\n  5.0000E+00\n", "column pointers do not ascend"),
         (header("RSA") + "   1   3   2\n   2\n  5.0000E+00\n", "column pointers do not ascend"),
-        (header("RSA") + "   1   2   2\n   2\n  5.0x00E+00\n", "could not convert"),
+        (
+            header("RSA") + "   1   2   2\n   2\n  5.0x00E+00\n",
+            "line 7: '5.0x00E.00' is no real number",
+        ),
         (header("RSA") + "   1   2   2\n   2\n         nan\n", r"nan at \(0, 1\)"),
         (header("RSA", entries=4) + BODY, "1 lines of rows announced, 4 fill 2"),
         (

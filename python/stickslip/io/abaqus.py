@@ -35,8 +35,9 @@ def read_abaqus(path: Path, key: Key) -> Labelled:
     if starts:
         return _substructure(lines, dict(starts), key.among(name for name, _ in starts))
     key.refuse()
-    body = "\n".join(line for line in lines if not line.startswith("*"))
-    words = len(body.partition("\n")[0].replace(",", " ").split())
+    # Lines keep their numbers in the file.
+    body = "\n".join("" if line.startswith("*") else line for line in lines)
+    words = len(body.lstrip().partition("\n")[0].replace(",", " ").split())
     if not words:
         raise ValueError("the file holds no entries")
     if words == 3:

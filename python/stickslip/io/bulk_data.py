@@ -9,7 +9,8 @@ from collections.abc import Container, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from stickslip.io.source import plain
+from stickslip.io.numbers import whole_field
+from stickslip.io.source import at_line, plain
 
 _HEAD, _TAIL = 8, 8
 """Columns of the name of a card, and of the mark of its continuation."""
@@ -38,16 +39,18 @@ def read_bulk(file: Path) -> Bulk:
     numbers: list[int] = []
     sets: dict[str, list[range]] = {}
     lines = plain(file.read_bytes(), "latin-1").splitlines()
-    for name, fields in cards(lines, ("GRID", "SET1")):
-        if name == "GRID":
-            numbers.append(int(fields[0]))
-            if fields[1] not in ("", "0"):
-                raise ValueError(
-                    f"GRID {fields[0]}: its coordinates are those of system {fields[1]}"
-                )
-        else:
-            own = sets.setdefault(f"SET1 {int(fields[0])}", [])
-            own.extend(_members([one for one in fields[1:] if one]))
+    for card in cards(lines, ("GRID", "SET1")):
+        with at_line(card.line):
+            number, *words = card.fields
+            if card.name == "GRID":
+                numbers.append(whole_field(number))
+                if words[0] not in ("", "0"):
+                    raise ValueError(
+                        f"GRID {number}: its coordinates are those of system {words[0]}"
+                    )
+            else:
+                own = sets.setdefault(f"SET1 {whole_field(number)}", [])
+                own.extend(_members([one for one in words if one]))
     return Bulk(numbers, sets)
 
 
@@ -56,20 +59,30 @@ def _members(words: list[str]) -> Iterator[range]:
     at = 0
     while at < len(words):
         if at + 2 < len(words) and words[at + 1].upper() == "THRU":
-            own = range(int(words[at]), int(words[at + 2]) + 1)
+            own = range(whole_field(words[at]), whole_field(words[at + 2]) + 1)
             if not own:
                 raise ValueError(f"SET1: {words[at]} THRU {words[at + 2]} names nothing")
             yield own
             at += 3
         else:
-            yield range(int(words[at]), int(words[at]) + 1)
+            yield range(whole_field(words[at]), whole_field(words[at]) + 1)
             at += 1
 
 
-def cards(lines: Iterable[str], names: Container[str]) -> Iterator[tuple[str, list[str]]]:
-    """Give each card of some names with its fields, those of continuations included."""
-    found: tuple[str, list[str]] | None = None
-    for line in lines:
+@dataclass(frozen=True)
+class Card:
+    """A card with its fields, those of continuations included."""
+
+    line: int
+    """Where it begins, from 1."""
+    name: str
+    fields: list[str]
+
+
+def cards(lines: Iterable[str], names: Container[str]) -> Iterator[Card]:
+    """Give each card of some names."""
+    found: Card | None = None
+    for number, line in enumerate(lines, 1):
         text = line.partition("$")[0].expandtabs().rstrip()
         if not text:
             continue
@@ -80,9 +93,9 @@ def cards(lines: Iterable[str], names: Container[str]) -> Iterator[tuple[str, li
                     raise ValueError(f"line {text[:40]!r} is no card and continues none")
                 yield found
             name = head.rstrip("*").rstrip().upper()
-            found = (name, []) if name in names else None
+            found = Card(number, name, []) if name in names else None
         if found:
-            found[1].extend(_fields(text))
+            found.fields.extend(_fields(text))
     if found:
         yield found
 

@@ -5,14 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TypeAlias
 
 import numpy as np
 
-from stickslip.checks import brief, unknown
+from stickslip.checks import MAX_SPARSE, brief, unknown
 from stickslip.fe.faces import by_size, element_faces, face_count
 from stickslip.fe.mesh import Mesh
 from stickslip.fe.surface import Places, turned
-from stickslip.io.source import read_text, readable
+from stickslip.io.numbers import real_field, whole_field
+from stickslip.io.source import at_line, read_text, readable
 
 _KINDS = {
     **dict.fromkeys((("C3D", 4), ("DC3D", 4)), "tetra"),
@@ -30,6 +32,8 @@ _NODES = {
     **{"tetra": 4, "tetra10": 10, "wedge": 6, "wedge15": 15, "hexahedron": 8},
     **{"hexahedron20": 20, "triangle": 3, "triangle6": 6, "quad": 4, "quad8": 8},
 }
+_MOST = MAX_SPARSE // 3
+"""Members of a range, which is written in few characters: no model has more nodes."""
 _DEEPEST = 8
 """Files that name each other with *INCLUDE."""
 
@@ -43,6 +47,25 @@ def read_deck(file: Path) -> Mesh:
         return deck.mesh()
 
 
+class _Row(list[str]):
+    """The words of a line, and where it stands."""
+
+    def __init__(self, words: Iterable[str], line: int, file: str) -> None:
+        super().__init__(words)
+        self.line, self.file = line, file
+
+    def whole(self) -> list[int]:
+        """Return whole numbers."""
+        with at_line(self.line, self.file):
+            return [whole_field(word, signed=True) for word in self]
+
+    def node(self) -> tuple[int, tuple[float, ...]]:
+        """Return the number of a node and its coordinates."""
+        with at_line(self.line, self.file):
+            number, *place = self
+            return whole_field(number, signed=True), tuple(map(real_field, place[:3]))
+
+
 @dataclass
 class _Deck:
     """What has been read so far."""
@@ -54,7 +77,7 @@ class _Deck:
     surfaces: dict[str, list[tuple[str, str]]] = field(default_factory=dict)
     left_out: set[int] = field(default_factory=set)
 
-    def take(self, keyword: str, options: dict[str, str], rows: list[list[str]]) -> None:
+    def take(self, keyword: str, options: dict[str, str], rows: list[_Row]) -> None:
         """Take over what stands below a keyword."""
         if keyword in ("PART", "INSTANCE"):
             raise ValueError(f"*{keyword}: write the deck without parts and instances")
@@ -69,27 +92,28 @@ class _Deck:
         elif keyword == "SURFACE":
             self._surface(options, rows)
 
-    def _nodes(self, options: dict[str, str], rows: list[list[str]]) -> None:
+    def _nodes(self, options: dict[str, str], rows: list[_Row]) -> None:
         if options.get("SYSTEM", "R") != "R":
             raise ValueError("*NODE, SYSTEM: give rectangular coordinates")
         for row in rows:
-            self.points[int(row[0])] = tuple([*map(float, row[1:4]), 0.0, 0.0, 0.0][:3])
+            number, place = row.node()
+            self.points[number] = (*place, 0.0, 0.0, 0.0)[:3]
         if "NSET" in options:
             self.node_sets.setdefault(options["NSET"], {}).update(
-                (int(row[0]), None) for row in rows
+                (row.node()[0], None) for row in rows
             )
 
-    def _elements(self, options: dict[str, str], rows: list[list[str]]) -> None:
+    def _elements(self, options: dict[str, str], rows: list[_Row]) -> None:
         given = options["TYPE"]
         stem = given[: len(given) - len(given.lstrip("DCSM"))]
         digits = given[len(stem) :]
         if digits.startswith("3D"):
             stem, digits = f"{stem}3D", digits[2:]
-        count = "".join(one for one in digits[:2] if one.isdigit())
+        count = "".join(one for one in digits[:2] if one in "0123456789")
         kind = _KINDS.get((stem, int(count or 0)))
-        numbers = [int(word) for row in rows for word in row]
+        numbers = [number for row in rows for number in row.whole()]
         if kind is None:
-            self.left_out.update(int(row[0]) for row in rows)
+            self.left_out.update(row.whole()[0] for row in rows)
         else:
             # An element may go on over several lines.
             size = 1 + _NODES[kind]
@@ -101,7 +125,7 @@ class _Deck:
                 if "ELSET" in options:
                     self.element_sets.setdefault(options["ELSET"], {})[number] = None
 
-    def _surface(self, options: dict[str, str], rows: list[list[str]]) -> None:
+    def _surface(self, options: dict[str, str], rows: list[_Row]) -> None:
         name = options["NAME"]
         if options.get("TYPE", "ELEMENT") == "NODE":
             _collect(self.node_sets, name, {}, rows)
@@ -151,8 +175,8 @@ class _Deck:
         """Give the faces of a surface, of all elements of a kind with one face together."""
         chosen: dict[tuple[str, str], list[int]] = {}
         for which, side in given:
-            if which.isdigit():
-                numbers: Iterable[int] = [int(which)]
+            if which.isdecimal():
+                numbers: Iterable[int] = [whole_field(which)]
             elif which in self.element_sets:
                 numbers = self.element_sets[which]
             else:
@@ -172,34 +196,44 @@ class _Deck:
                 yield turned(faces) if side in ("S1", "SNEG") else faces
                 continue
             digit = side.removeprefix("S")
-            if not digit.isdigit() or not 1 <= int(digit) <= face_count(kind):
+            if digit not in map(str, range(1, face_count(kind) + 1)):
                 raise ValueError(f"surface {name}: {kind} has no face {brief(side)}; give S1, ...")
             yield element_faces(kind, own, int(digit), points)
 
 
 def _collect(
-    sets: dict[str, dict[int, None]], name: str, options: dict[str, str], rows: list[list[str]]
+    sets: dict[str, dict[int, None]], name: str, options: dict[str, str], rows: list[_Row]
 ) -> None:
     """Add numbers, ranges, and members of other sets to a set."""
     own = sets.setdefault(name, {})
     for row in rows:
         if "GENERATE" in options:
-            first, last, step = (*map(int, row), 1)[:3]
-            own.update(dict.fromkeys(range(first, last + 1, step)))
+            own.update(dict.fromkeys(_generated(name, row.whole())))
             continue
         for word in row:
-            if word.lstrip("-").isdigit():
-                own[int(word)] = None
-            elif word in sets:
+            if word in sets:
                 own.update(sets[word])
+            elif word.lstrip("-").isdecimal():
+                own[whole_field(word, signed=True)] = None
             else:
                 raise ValueError(f"set {name}: {unknown('set', word, sets)}")
 
 
-def _blocks(lines: Iterable[str]) -> Iterator[tuple[str, dict[str, str], list[list[str]]]]:
+def _generated(name: str, numbers: list[int]) -> range:
+    """Return the numbers from a first to a last one."""
+    first, last, step = (*numbers, 1)[:3] if len(numbers) > 1 else (0, 0, 0)
+    if step < 1 or len(numbers) > 3:
+        raise ValueError(f"set {name}: {brief(numbers)} is no range; give first, last, step")
+    found = range(first, last + 1, step)
+    if len(found) > _MOST:
+        raise ValueError(f"set {name}: {first} to {last} are too many; at most {_MOST}")
+    return found
+
+
+def _blocks(lines: Iterable[_Line]) -> Iterator[tuple[str, dict[str, str], list[_Row]]]:
     """Give each keyword with its options and the rows below it, all in capitals."""
-    found: tuple[str, dict[str, str], list[list[str]]] | None = None
-    for line in lines:
+    found: tuple[str, dict[str, str], list[_Row]] | None = None
+    for file, number, line in lines:
         words = [word.strip().upper() for word in line.split(",")]
         if line.startswith("*"):
             if found:
@@ -210,7 +244,7 @@ def _blocks(lines: Iterable[str]) -> Iterator[tuple[str, dict[str, str], list[li
                 if key not in found[1]:
                     raise ValueError(f"*{found[0]}: {key}= is missing")
         elif found:
-            found[2].append([word for word in words if word])
+            found[2].append(_Row((word for word in words if word), number, file))
     if found:
         yield found
 
@@ -218,15 +252,19 @@ def _blocks(lines: Iterable[str]) -> Iterator[tuple[str, dict[str, str], list[li
 _NAMED = {"NSET": ("NSET",), "ELSET": ("ELSET",), "SURFACE": ("NAME",), "ELEMENT": ("TYPE",)}
 
 
-def _lines(file: Path, depth: int) -> Iterator[str]:
+_Line: TypeAlias = tuple[str, int, str]
+"""Name of the file if it is an included one, number of the line, and what it says."""
+
+
+def _lines(file: Path, depth: int) -> Iterator[_Line]:
     """Give the lines of a deck, without comments, those of included files in their place."""
     if depth > _DEEPEST:
         raise ValueError("*INCLUDE: files include each other")
-    for line in read_text(file, "latin-1").splitlines():
+    for number, line in enumerate(read_text(file, "latin-1").splitlines(), 1):
         text = line.strip()
         if not text or text.startswith("**"):
             continue
         if text.upper().replace(" ", "").startswith("*INCLUDE,INPUT="):
             yield from _lines(file.parent / text.partition("=")[2].strip().strip('"'), depth + 1)
         else:
-            yield text
+            yield file.name if depth else "", number, text

@@ -10,7 +10,7 @@ import numpy as np
 from stickslip.io.bulk_data import cards
 from stickslip.io.entries import Labelled, Sparse, node_names, square_matrix, whole_matrix
 from stickslip.io.numbers import real_field, whole_field
-from stickslip.io.source import Key, read_text
+from stickslip.io.source import Key, at_line, read_text
 
 _Place = tuple[int, int]
 """Grid point and component."""
@@ -39,20 +39,9 @@ def read_dmig(path: Path, key: Key) -> Labelled:
     """
     text = read_text(path, ended=True)
     matrices: dict[str, _Entries] = {}
-    for _, fields in cards(text.splitlines(), ("DMIG",)):
-        name = fields[0].upper()
-        if fields[1] == "0":
-            if any(fields[8:]):
-                raise ValueError(
-                    f"matrix {name!r}: its first card has entries; a column is missing"
-                )
-            if name in matrices:
-                raise ValueError(f"matrix {name!r} is given twice")
-            matrices[name] = _Entries(whole_field(fields[2]), whole_field(fields[3]))
-        elif name not in matrices:
-            raise ValueError(f"matrix {name!r} has columns, but no first card")
-        else:
-            _add_column(matrices[name], fields)
+    for card in cards(text.splitlines(), ("DMIG",)):
+        with at_line(card.line):
+            _take(matrices, card.fields)
     if not matrices:
         raise ValueError("no DMIG card")
     used = sorted({place for one in matrices.values() for place in (*one.rows, *one.columns)})
@@ -60,6 +49,21 @@ def read_dmig(path: Path, key: Key) -> Labelled:
     made = {name: _matrix(name, entries, index) for name, entries in matrices.items()}
     chosen = Key(path, key.name and key.name.upper()).among(made)
     return Labelled(made[chosen], node_names(*zip(*used, strict=True)) if used else ())
+
+
+def _take(matrices: dict[str, _Entries], fields: list[str]) -> None:
+    """Take over the first card of a matrix, or one of its columns."""
+    name = fields[0].upper()
+    if fields[1] == "0":
+        if any(fields[8:]):
+            raise ValueError(f"matrix {name!r}: its first card has entries; a column is missing")
+        if name in matrices:
+            raise ValueError(f"matrix {name!r} is given twice")
+        matrices[name] = _Entries(whole_field(fields[2]), whole_field(fields[3]))
+    elif name not in matrices:
+        raise ValueError(f"matrix {name!r} has columns, but no first card")
+    else:
+        _add_column(matrices[name], fields)
 
 
 def _add_column(entries: _Entries, fields: list[str]) -> None:

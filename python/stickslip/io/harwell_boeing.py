@@ -7,16 +7,17 @@ an E in the exponents; finite-element codes write none of these reliably.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.io.entries import Sparse, columns_of, whole_matrix
 from stickslip.io.numbers import real_field, require_whole_numbers, whole_field
-from stickslip.io.source import read_text
+from stickslip.io.source import at_line, read_text
 
 _CUT_EXPONENT = re.compile(r"[EeDd][+-]?\d$")
 _FORMAT = re.compile(
@@ -25,6 +26,14 @@ _FORMAT = re.compile(
     re.I,
 )
 _COUNT = re.compile("[0-9]{1,18}")
+
+
+class _Block(NamedTuple):
+    """Lines that follow each other."""
+
+    first: int
+    """Number of the first line, from 1."""
+    lines: list[str]
 
 
 @dataclass(frozen=True)
@@ -48,10 +57,10 @@ class _Columns:
         """Return how many lines `count` numbers fill."""
         return -(-count // self.repeat)
 
-    def fields(self, lines: list[str], count: int) -> Iterator[str]:
-        """Cut `count` numbers out of the lines that they fill."""
+    def numbers(self, block: _Block, count: int, read: Callable[[str], Any]) -> Iterator[Any]:
+        """Read `count` numbers from the lines that they fill."""
         left = count
-        for line in lines:
+        for number, line in enumerate(block.lines, block.first):
             expected = min(self.repeat, left)
             # Numbers that touch are parted by the columns; SciPy's writer does not keep to its own.
             words = line.split()
@@ -62,14 +71,16 @@ class _Columns:
                     words = []
             if not words or not all(words):
                 raise ValueError(f"{expected} numbers announced in line {line.strip()[:60]!r}")
-            yield from words
+            with at_line(number):
+                read_here = [read(word) for word in words]
+            yield from read_here
             left -= expected
 
-    def integers(self, lines: list[str], count: int) -> NDArray[np.int64]:
-        return np.fromiter(map(whole_field, self.fields(lines, count)), np.int64, count)
+    def integers(self, block: _Block, count: int) -> NDArray[np.int64]:
+        return np.fromiter(self.numbers(block, count, whole_field), np.int64, count)
 
-    def reals(self, lines: list[str], count: int) -> NDArray[np.float64]:
-        return np.fromiter(map(_real, self.fields(lines, count)), np.float64, count)
+    def reals(self, block: _Block, count: int) -> NDArray[np.float64]:
+        return np.fromiter(self.numbers(block, count, _real), np.float64, count)
 
 
 def _real(word: str) -> float:
@@ -106,7 +117,7 @@ def read_harwell_boeing(path: Path) -> Sparse:
         needed = written.cards(count)
         if needed != announced:
             raise ValueError(f"{announced} lines of {name} announced, {count} fill {needed}")
-        blocks.append(lines[start : start + needed])
+        blocks.append(_Block(start + 1, lines[start : start + needed]))
         start += needed
     if total != sum(cards):
         raise ValueError(f"{total} lines announced in all, but {sum(cards)} by parts")

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from stickslip.checks import MAX_DENSE
 from stickslip.io.entries import SIGNS, Sparse, whole_matrix
-from stickslip.io.numbers import require_representable, require_whole_numbers
+from stickslip.io.numbers import require_whole_numbers, table_of
 from stickslip.io.source import plain, unzip
 
 _FIELDS = {"real": False, "double": False, "integer": True, "unsigned-integer": True}
@@ -75,10 +75,10 @@ def read_matrix_market(path: Path) -> Sparse:
     head = _Head.parse(text)
     require_whole_numbers(text)
     if head.layout == "coordinate":
-        table = _table(text[head.end :], _ENTRY, head.entries)
+        table = _table(text, head, _ENTRY)
         row, column, values = table["row"] - 1, table["column"] - 1, table["value"]
     else:
-        values = _table(text[head.end :], np.dtype(np.float64), head.entries)
+        values = _table(text, head, np.dtype(np.float64))
         row, column = _places(head.rows, head.columns, SIGNS[head.symmetry])
     if head.whole and (values != np.rint(values)).any():
         raise ValueError("integers announced, and an entry is none")
@@ -116,20 +116,17 @@ def _sizes(line: str, count: int) -> list[int]:
     return list(map(int, words))
 
 
-def _table(text: str, dtype: np.dtype[Any], entries: int) -> NDArray[Any]:
+def _table(whole: str, head: _Head, dtype: np.dtype[Any]) -> NDArray[Any]:
     """Read one entry per line."""
-    table = np.empty(0, dtype)
+    table, text = np.empty(0, dtype), whole[head.end :]
     if text.strip():
         if not text.isascii() or "_" in text:
             text = re.sub(r"%[^\n]*", "", text)
         if not text.isascii() or "_" in text:
             raise ValueError("characters that are no part of a number")
-        # Fortran writes exponents with a D.
-        lines = (line.upper().replace("D", "E") for line in text.split("\n"))
-        table = np.loadtxt(lines, dtype, comments="%", ndmin=1)
-        require_representable(text)
-    if table.size != entries:
-        raise ValueError(f"{entries} entries announced, {table.size} present")
+        table = table_of(text, dtype, 1 + whole.count("\n", 0, head.end))
+    if table.size != head.entries:
+        raise ValueError(f"{head.entries} entries announced, {table.size} present")
     return table
 
 

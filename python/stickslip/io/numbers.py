@@ -6,27 +6,35 @@ and the digits of all scripts.
 
 from __future__ import annotations
 
-import io
+import math
 import re
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.checks import vanished
 
-_WHOLE = re.compile(r"[+-]?[0-9]+")
+_WHOLE = re.compile(r"[+-]?[0-9]{1,40}")
+_LARGEST = 2**63
 # Fortran drops the letter of an exponent of three digits: 1.5-101.
 _BARE_EXPONENT = re.compile(r"(?<=[0-9.])([+-][0-9]+)$")
 _EXPONENT = re.compile(r"(?:[ED][+-]?|(?<=[\d.])[+-])(\d+)[ \t\r]*$", re.I)
-# Smaller exponents are those of numbers that do not vanish.
-_SMALL = re.compile(r"[-+.0-9]+[ED]-0*[1-9][0-9]{2,}", re.I)
+# Exponents of two digits and less than 200 zeros are those of numbers that do not vanish.
+_SMALL = re.compile(
+    r"(?<![-+.0-9])(?:[-+.0-9]+[ED]-0*[1-9][0-9]{2,}|[-+]?0*\.0{200,}[0-9]+(?:[ED][-+]?[0-9]+)?)",
+    re.I,
+)
 
 
 def whole_field(field: str, *, signed: bool = False) -> int:
     """Read a whole number, negative only if `signed`."""
     if not _WHOLE.fullmatch(field) or (field[0] == "-" and not signed):
         raise ValueError(f"{field[:40]!r} stands where a whole number must be")
-    return int(field)
+    number = int(field)
+    if abs(number) >= _LARGEST:
+        raise ValueError(f"{field[:40]} is too large for a whole number")
+    return number
 
 
 def real_field(field: str) -> float:
@@ -40,7 +48,10 @@ def real_field(field: str) -> float:
         number = float(field)
     except ValueError:
         written = field.upper().replace("D", "E")
-        number = float(written if "E" in written else _BARE_EXPONENT.sub(r"E\1", written))
+        try:
+            number = float(written if "E" in written else _BARE_EXPONENT.sub(r"E\1", written))
+        except ValueError:
+            raise ValueError(f"{field[:40]!r} is no real number") from None
     _require_not_vanished(field, number)
     return number
 
@@ -83,11 +94,40 @@ def entry_table(text: str, words: int) -> NDArray[np.float64]:
     text = text.upper().replace("D", "E").replace(",", " ")
     if not set(text) <= set("0123456789+-.E \t\r\n"):
         raise ValueError("characters that are no part of a number")
-    table = np.loadtxt(io.StringIO(text), dtype=np.float64, ndmin=2)
-    if table.shape[1] != words:
-        raise ValueError(f"{table.shape[1]} numbers in a line, {words} expected")
+    return table_of(text, np.dtype((np.float64, (words,))))
+
+
+def table_of(text: str, dtype: np.dtype[Any], first: int = 1) -> NDArray[Any]:
+    """Read a text of which every line is an entry, of so many numbers as the type says.
+
+    Lines without numbers are passed over, and what stands behind a %. `first` is the number in its
+    file that the first line has.
+    """
+    # Fortran writes exponents with a D.
+    lines = (line.upper().replace("D", "E") for line in text.split("\n"))
+    flat = np.dtype([("entry", dtype)]) if dtype.names is None else dtype
+    try:
+        table = np.loadtxt(lines, flat, comments="%", ndmin=1)
+    except (ValueError, OverflowError) as error:
+        raise ValueError(_misfit(text.split("\n"), flat, first) or str(error)) from None
     require_representable(text)
-    return table
+    return table if dtype.names else np.ascontiguousarray(table["entry"])
+
+
+def _misfit(lines: list[str], dtype: np.dtype[Any], first: int) -> str | None:
+    """Say in which line a word is no number of its kind, or which has too few or too many."""
+    parts = [dtype[name] for name in dtype.names or ()]
+    whole = [part.base.kind == "i" for part in parts for _ in range(math.prod(part.shape))]
+    for number, line in enumerate(lines, first):
+        words = line.partition("%")[0].split()
+        if words and len(words) != len(whole):
+            return f"line {number}: {len(words)} numbers in {line.strip()[:30]!r}, not {len(whole)}"
+        for word, counts in zip(words, whole, strict=False):
+            try:
+                whole_field(word, signed=True) if counts else real_field(word)
+            except ValueError as error:
+                return f"line {number}: {error}"
+    return None
 
 
 def counted(numbers: NDArray[np.float64], kind: str) -> NDArray[np.int64]:

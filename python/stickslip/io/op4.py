@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from stickslip.io.entries import Sparse, require_size
 from stickslip.io.numbers import real_field, whole_field
-from stickslip.io.source import Key, plain
+from stickslip.io.source import Key, Lines, plain
 
 _FORMAT = re.compile(r"(?:1P,?)?(\d+)[ED](\d+)\.\d+", re.I)
 _LARGE = 65536
@@ -189,29 +189,37 @@ def _text(content: bytes) -> Iterator[_Column]:
     text = plain(content, "ascii")
     if not text.endswith("\n"):
         raise ValueError("the last line does not end; the file was cut short")
-    lines = iter(text.splitlines())
+    lines = Lines(text)
     for first in lines:
-        header, numbers = _first_line(first)
-        columns = []
-        while True:
-            column, row, words = _integers(_line(lines), 3)
-            if column == header.columns + 1:
-                # Writers do not agree on how many numbers follow the last column.
-                if not (trailer := _line(lines).rstrip()) or len(trailer) % numbers[1]:
-                    raise ValueError(f"the file ends inside matrix {header.name!r}")
-                break
-            if row > 0:
-                columns.append((column, [(row, _reals(lines, words, *numbers))]))
-                continue
-            pieces = []
-            while words > 0:
-                size, row = header.string(_integers(_line(lines), 1 + header.large))
-                words -= size + 1 + header.large
-                if size < 1 or words < 0 or size % header.words:
-                    raise ValueError(f"a string of {size} words at row {row}")
-                pieces.append((row, _reals(lines, size // header.words, *numbers)))
-            columns.append((column, pieces))
-        yield header, columns
+        try:
+            found = _lines_of_matrix(first, lines)
+        except ValueError as error:
+            raise ValueError(f"line {lines.number}: {error}") from error
+        yield found
+
+
+def _lines_of_matrix(first: str, lines: Lines) -> _Column:
+    """Read the lines of a matrix."""
+    header, numbers = _first_line(first)
+    columns: list[tuple[int, list[_Piece]]] = []
+    while True:
+        column, row, words = _integers(_line(lines), 3)
+        if column == header.columns + 1:
+            # Writers do not agree on how many numbers follow the last column.
+            if not (trailer := _line(lines).rstrip()) or len(trailer) % numbers[1]:
+                raise ValueError(f"the file ends inside matrix {header.name!r}")
+            return header, columns
+        if row > 0:
+            columns.append((column, [(row, _reals(lines, words, *numbers))]))
+            continue
+        pieces = []
+        while words > 0:
+            size, row = header.string(_integers(_line(lines), 1 + header.large))
+            words -= size + 1 + header.large
+            if size < 1 or words < 0 or size % header.words:
+                raise ValueError(f"a string of {size} words at row {row}")
+            pieces.append((row, _reals(lines, size // header.words, *numbers)))
+        columns.append((column, pieces))
 
 
 def _line(lines: Iterator[str]) -> str:
@@ -239,14 +247,14 @@ def _reals(lines: Iterator[str], count: int, per_line: int, width: int) -> NDArr
     """Read `count` numbers of `width` characters each."""
     if count < 1 or not per_line or not width:
         raise ValueError(f"{count} numbers announced, {per_line} in a line")
-    fields: list[str] = []
-    while len(fields) < count:
-        expected = min(per_line, count - len(fields))
+    found: list[float] = []
+    while len(found) < count:
+        expected = min(per_line, count - len(found))
         line = _line(lines).rstrip()
         if len(line) != expected * width:
             raise ValueError(f"{expected} numbers of {width} characters expected: {line[:40]!r}")
-        fields += [line[at : at + width] for at in range(0, len(line), width)]
-    return np.array([real_field(field) for field in fields])
+        found += [real_field(line[at : at + width]) for at in range(0, len(line), width)]
+    return np.array(found)
 
 
 def _integers(line: str, count: int, width: int = 8) -> list[int]:

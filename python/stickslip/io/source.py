@@ -68,6 +68,34 @@ def readable(file: Path, kind: str) -> Iterator[None]:
         ) from error
 
 
+@contextmanager
+def at_line(number: int, file: str = "") -> Iterator[None]:
+    """Name the line of a file, the one that is read or another, in what is wrong with it."""
+    try:
+        yield
+    except ValueError as error:
+        if isinstance(error, ModelError):
+            raise
+        raise ValueError(f"{file} line {number}: {error}".lstrip()) from error
+
+
+class Lines:
+    """The lines of a text, one after the other."""
+
+    def __init__(self, text: str) -> None:
+        self._lines = iter(text.splitlines())
+        self.number = 0
+        """Of the line that was read last, from 1."""
+
+    def __iter__(self) -> Iterator[str]:
+        return self
+
+    def __next__(self) -> str:
+        line = next(self._lines)
+        self.number += 1
+        return line
+
+
 def read_text(path: Path, encoding: str = "ascii", *, ended: bool = False) -> str:
     """Return the text of a file, see `plain`; of an `ended` one the last line must end."""
     text = plain(path.read_bytes(), encoding)
