@@ -1,4 +1,7 @@
-"""Calls that do not fit a signature: one line that names the keyword, instead of a TypeError."""
+"""Calls that do not fit a signature: one line that names the keyword, instead of a TypeError.
+
+Arrays of which entries are masked fit none: the numbers below the mask would be taken for given.
+"""
 
 from __future__ import annotations
 
@@ -10,11 +13,15 @@ from functools import wraps
 from types import FunctionType
 from typing import Any
 
+import numpy as np
+
 from stickslip.checks import listed, unknown
-from stickslip.errors import CallError
+from stickslip.errors import CallError, ModelError
 
 _PACKAGE = __name__.partition(".")[0]
 _WRAPPED = "__stickslip_checked__"
+_FEW, _DEEP = 100, 3
+"""Members of a list, and lists in lists, in which masked arrays are looked for."""
 _done: set[type] = set()
 
 
@@ -62,6 +69,9 @@ def _check_class(owner: type) -> None:
 def _checked_function(function: FunctionType) -> Callable[..., Any]:
     @wraps(function)
     def call(*args: Any, **keywords: Any) -> Any:
+        for value in (*args, *keywords.values()):
+            if _has_mask(value):
+                raise _masked(function, args, keywords)
         try:
             result = function(*args, **keywords)
         except TypeError as error:
@@ -78,6 +88,28 @@ def _checked_function(function: FunctionType) -> Callable[..., Any]:
 
     setattr(call, _WRAPPED, True)
     return call
+
+
+def _has_mask(value: object, depth: int = 0) -> bool:
+    """Return whether entries of an array, or of one in a list, are masked."""
+    if isinstance(value, np.ndarray):
+        return type(value) is not np.ndarray and bool(np.ma.is_masked(value))
+    if depth == _DEEP or not isinstance(value, list | tuple | dict) or len(value) > _FEW:
+        return False
+    members = value.values() if isinstance(value, dict) else value
+    return any(_has_mask(one, depth + 1) for one in members)
+
+
+def _masked(
+    function: FunctionType, args: tuple[object, ...], keywords: Mapping[str, object]
+) -> ModelError:
+    names = list(inspect.signature(function).parameters)
+    given = {**dict(zip(names, args, strict=False)), **keywords}
+    name = next((name for name, value in given.items() if _has_mask(value)), "arguments")
+    return ModelError(
+        f"{name}: masked entries, which have no value; give numpy.ma.compressed(...) of a list, or "
+        "numpy.ma.filled(..., value)"
+    )
 
 
 def misfit(

@@ -78,6 +78,14 @@ _LONGEST = 80
 # pint would compute 9**9**9 to the last digit.
 _POWER_OF_NUMBER = re.compile(r"[0-9)]\s*(?:\*\*|[\^²³])")
 _UNIT = re.compile(r"[A-Za-zµμ°%²³·*/^()\s0-9.+-]*")
+# pint passes over signs and points that part no factors: "--N", "N..".
+_LOOSE = re.compile(
+    r"""(?<![*^(\s]) \s* [+-]             # a sign that is not of an exponent
+    | [+-] (?! \s* [0-9.])
+    | \. (?! \s* [A-Za-zµμ°%(] | [0-9])  # a point with nothing behind
+    | (?<! [A-Za-zµμ°%²³)0-9\s]) \. (?! [0-9])""",
+    re.X,
+)
 
 
 def quantity(value: float | str, unit: str, entry: str, *, finite: bool = True) -> float:
@@ -161,7 +169,7 @@ def _factor(given: str, unit: str, text: str, entry: str) -> float:
     from pint.errors import DimensionalityError, PintError
 
     registry = _registry()
-    if _UNIT.fullmatch(given) is None or _POWER_OF_NUMBER.search(given):
+    if not _UNIT.fullmatch(given) or _POWER_OF_NUMBER.search(given) or _LOOSE.search(given):
         raise _refusal(text, unit, entry, f"has an unknown unit {brief(given)}")
     try:
         one = registry.Quantity(1.0, registry.parse_units(given))

@@ -299,3 +299,11 @@ def test_a_new_kind_joins_with_its_view(tmp_path, monkeypatch):
     assert "turning points" in page.captions
     assert {"ratio", "1.25", "branches", "turned back", "Branch", "None."} <= set(page.texts)
     assert len(page.figures) == 1
+
+
+@pytest.mark.parametrize("dofs", [-1, 3.5, object(), np.zeros((2, 2)), [None], b"tip", ["tip", 3]])
+def test_dofs_that_are_no_names_are_refused_in_one_line(dofs, tmp_path):
+    frf = ss.forced_response(BEAM, [170.0], 1)
+    with pytest.raises(ss.ModelError, match=r"^dofs: ") as refused:
+        ss.report(frf, tmp_path / "a.html", dofs=dofs)
+    assert "\n" not in str(refused.value)

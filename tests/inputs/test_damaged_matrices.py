@@ -64,7 +64,20 @@ def test_a_cut_exponent_of_a_harwell_boeing_file_is_refused(read, tmp_path):
         read(file(whole[:-1]), "k.hb")
 
 
-@pytest.mark.parametrize("unit", ["N-", "N+", "N*", "N/", "N**", "()", "^", "-", "N--"])
+MALFORMED = [
+    *("N-", "N+", "N*", "N/", "N**", "()", "^", "-", "N--", "--N", "+N", "+ N", "N*+N/N"),
+    *("N..", "N.", ".N", "N .", "..N", "N..m/m", "N./m m"),
+]
+
+
+@pytest.mark.parametrize("unit", MALFORMED)
 def test_malformed_units_are_refused(unit):
     with pytest.raises(ss.ModelError, match="unit"):
         ss.Force("a", f"1 {unit}")
+
+
+@pytest.mark.parametrize(
+    "unit", ["N.m/m", "kg . m.s^-2", "kg m s^ -2", "kg m s**(-2)", "kg.m.s^-2.0"]
+)
+def test_points_and_signs_that_say_something_are_read(unit):
+    assert ss.Force("a", f"2 {unit}").amplitude == 2.0

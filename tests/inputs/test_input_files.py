@@ -3,6 +3,7 @@
 import gzip
 import io
 import os
+import re
 import socket
 import struct
 import zipfile
@@ -155,6 +156,14 @@ def test_a_header_that_announces_more_than_the_file_has(tmp_path):
     refused("takes 32 bytes, 40 are there", read_matrix, tmp_path / "k.npy")
 
 
+@pytest.mark.parametrize("shape", ["(-1, -1)", "(-2, -2)", "(True, 1)"])
+def test_a_shape_that_no_array_has_is_named(tmp_path, shape):
+    header = f"{{'descr': '<f8', 'fortran_order': False, 'shape': {shape}}}".ljust(117) + "\n"
+    start = b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header.encode()
+    (tmp_path / "k.npy").write_bytes(start + b"\0" * 32)
+    refused(re.escape(f"an array of shape {shape}"), read_matrix, tmp_path / "k.npy")
+
+
 def test_two_arrays_of_one_name_are_refused(tmp_path):
     content = io.BytesIO()
     np.save(content, np.eye(2))
@@ -177,6 +186,17 @@ def test_packed_arrays_unpack_up_to_a_size(tmp_path, monkeypatch):
     monkeypatch.setattr(source, "LARGEST_UNPACKED", 50_000)
     for name in ("k.npz", "k.mat", "seven.mat"):
         refused("unpacks to 80[0-9]{3} bytes", read_matrix, tmp_path / name)
+    # Each number is read to 8 bytes, however few it has in the file.
+    small = ones.astype(np.float32)
+    np.savez_compressed(tmp_path / "k.npz", K=small)
+    scipy.io.savemat(tmp_path / "k.mat", {"K": small}, do_compression=True)
+    with h5py.File(tmp_path / "seven.mat", "w") as file:
+        made = file.create_dataset("K", data=small, compression="gzip")
+        made.attrs["MATLAB_class"] = np.bytes_("single")
+    for name in ("k.npz", "k.mat", "seven.mat"):
+        refused("unpacks to 10000 numbers", read_matrix, tmp_path / name)
+    scipy.io.savemat(tmp_path / "k.mat", {"K": small})
+    np.testing.assert_array_equal(read_matrix(tmp_path / "k.mat"), ones)
     np.savez(tmp_path / "k.npz", K=ones)  # what is not packed may be as large as its file
     np.testing.assert_array_equal(read_matrix(tmp_path / "k.npz"), ones)
 

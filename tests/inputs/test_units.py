@@ -82,7 +82,7 @@ def test_a_number_or_a_text_with_a_unit_is_read_in_si(value, unit, expected):
         ("20 N**9**9**9", "N", r"has an unknown unit 'N\*\*9\*\*9\*\*9'"),
         ("20 N*9²²²²²²²²²²", "N", "has an unknown unit"),
         ("20 N**N", "N", "has an unknown unit"),
-        ("20 N..m", "N", "is not a force"),
+        ("20 N..m", "N", "has an unknown unit 'N..m'"),
         ("25 Hz", "N", r"'25 Hz' is not a force \[N\]"),
         ("300 1/s", "rad/s", r"'300 1/s' is not a frequency \[rad/s\]; .* '25 Hz'"),
         ("25 Hz", "1/s", r"'25 Hz' is not a rate \[1/s\]"),

@@ -352,3 +352,42 @@ def test_remedies_for_python_stay():
         ss.transient(disk("ps.z"), omega=100.0, periods=2)
     again = pickle.loads(pickle.dumps(refusal.value))
     assert (str(again), again.study) == (str(refusal.value), refusal.value.study)
+
+
+MASKED = np.ma.masked_array([160.0, 170.0, 180.0], mask=[False, True, False])
+HALF = np.ma.masked_array(np.eye(3) * 1e4, mask=np.eye(3) > 0.0)
+
+
+@pytest.mark.parametrize(
+    ("name", "call"),
+    [
+        ("omega", lambda given: ss.forced_response(BEAM, given, 3)),
+        ("omega", lambda given: ss.forced_response(BEAM, omega=list(given), harmonics=3)),
+        ("omega", lambda given: ss.exact_response(BEAM, given)),
+        ("mass", lambda given: ss.Structure(HALF, np.eye(3))),
+        ("stiffness", lambda given: ss.Structure(np.eye(3), stiffness=HALF)),
+        ("slip_force", lambda given: ss.damper_curve(BEAM, slip_force=given, dof="tip")),
+        ("slip_forces", lambda given: ss.ParallelJenkins("a", stiffness=(1, 2), slip_forces=given)),
+        ("amplitude", lambda given: ss.Measurement([1.0, 2.0, 3.0], "tip", given)),
+        ("axes", lambda given: ss.basin_map(BEAM, {"tip": given, "damper": given})),
+        ("values", lambda given: ss.io.Frf([1.0, 2.0, 3.0], given, "a", "b")),
+        ("pattern", lambda given: disk("ps.z").mistuned(list(MASKED) * 2)),
+        ("nodes", lambda given: ss.Mesh(HALF)),
+    ],
+)
+def test_masked_entries_have_no_value(name, call):
+    with pytest.raises(ss.ModelError, match=f"^{name}: masked entries, which have no value"):
+        call(MASKED)
+
+
+def test_an_array_of_which_nothing_is_masked_is_one():
+    omega = np.ma.masked_array([170.0, 180.0], mask=False)
+    np.testing.assert_array_equal(
+        ss.forced_response(BEAM, omega, 3).amplitude("tip"), FRF.amplitude("tip")
+    )
+
+
+def test_a_position_that_is_an_array_is_told_in_one_line():
+    with pytest.raises(ss.ModelError, match="is not an integer; see omega") as refused:
+        FRF.contact_force(0, np.zeros((2, 2, 2)))
+    assert len(str(refused.value).splitlines()) == 1

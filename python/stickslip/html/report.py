@@ -7,7 +7,7 @@ import warnings
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Literal, TypeAlias, Union
 
-from stickslip.checks import brief, choice, file_path, text
+from stickslip.checks import brief, choice, file_path, members, text
 from stickslip.errors import ModelError
 from stickslip.files import require_place, write
 from stickslip.results.result import Result
@@ -137,7 +137,8 @@ def _entries(results: object) -> list[Entry]:
 def _dofs(dofs: Iterable[str] | str | None, entries: list[Entry]) -> tuple[str, ...] | None:
     if dofs is None:
         return None
-    wanted = (dofs,) if isinstance(dofs, str) else tuple(dofs)
+    given = (dofs,) if isinstance(dofs, str) else members(dofs, "dofs", "['tip']")
+    wanted = tuple(text(dof, "dofs") for dof in given)
     if not wanted:
         raise ModelError("dofs: empty; name at least one, or leave it out")
     for dof in wanted:

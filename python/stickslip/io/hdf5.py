@@ -43,6 +43,8 @@ def require_held(dataset: h5py.Dataset) -> None:
     chunk = math.prod(dataset.chunks) * width
     if max(announced, chunk) > source.LARGEST_UNPACKED and announced > held:
         raise ValueError(f"{name!r} unpacks to {announced} bytes; reduce the model")
+    if announced > held:
+        source.require_room(name, math.prod(dataset.shape))
     counts = (-(-size // step) for size, step in zip(dataset.shape, dataset.chunks, strict=True))
     parts: list[h5py.h5d.StoreInfo] = []
     dataset.id.chunk_iter(parts.append)

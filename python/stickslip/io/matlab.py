@@ -19,7 +19,7 @@ from stickslip.checks import brief
 from stickslip.errors import ModelError
 from stickslip.io.entries import columns_of, require_once
 from stickslip.io.hdf5 import require_held, require_own
-from stickslip.io.source import Key, inflate
+from stickslip.io.source import Key, inflate, require_room
 
 if TYPE_CHECKING:
     import h5py  # type: ignore[import-untyped, unused-ignore]
@@ -126,7 +126,7 @@ def _require_sound(path: Path) -> None:
         for part, matrix in found:
             if part != _MATRIX:
                 raise ValueError(f"an element of type {part} stands where a matrix must be")
-            _require_matrix(matrix, order)
+            _require_matrix(matrix, order, packed=kind == _COMPRESSED)
 
 
 def _unpacked(body: memoryview, order: str) -> memoryview:
@@ -155,7 +155,7 @@ def _elements(content: memoryview, order: str) -> Iterator[tuple[int, memoryview
         place += 8 + step
 
 
-def _require_matrix(body: memoryview, order: str) -> None:
+def _require_matrix(body: memoryview, order: str, *, packed: bool) -> None:
     """Check what the matrix is made of; structures, cells and texts are refused elsewhere."""
     kinds, bodies = zip(*_elements(body, order), strict=True) if body else ((), ())
     if kinds[:1] != (6,) or len(bodies[0]) != 8:
@@ -189,6 +189,8 @@ def _require_matrix(body: memoryview, order: str) -> None:
             raise ValueError(f"a row index lies outside 1 to {shape[0]}")
     elif set(counts) != {math.prod(shape)}:
         raise ValueError(f"the file is damaged: {counts} numbers in a matrix of shape {shape}")
+    elif packed:
+        require_room(bytes(bodies[2]).decode("latin-1"), math.prod(shape))
 
 
 def _integers(kind: int, body: memoryview, order: str) -> NDArray[np.int64]:

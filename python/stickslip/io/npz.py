@@ -52,7 +52,9 @@ def _require_sound(stream: IO[bytes]) -> None:
                     raise ValueError(f"{name!r} unpacks to {size} bytes; save it unpacked")
                 if name.endswith(".npy"):
                     with archive.open(member) as array:
-                        _require_held(array, size)
+                        count = _require_held(array, size)
+                    if packed:
+                        source.require_room(name, count)
     else:
         size = stream.seek(0, os.SEEK_END)
         stream.seek(0)
@@ -60,13 +62,16 @@ def _require_sound(stream: IO[bytes]) -> None:
     stream.seek(0)
 
 
-def _require_held(stream: IO[bytes], size: int) -> None:
-    """Compare the header of an array with the bytes that follow."""
+def _require_held(stream: IO[bytes], size: int) -> int:
+    """Compare the header of an array with the bytes that follow; return how many numbers it has."""
     version = np.lib.format.read_magic(stream)
     if version not in _HEADERS:
         raise ValueError(f"an array of format {version}")
     shape, _, dtype = _HEADERS[version](stream)
+    if any(isinstance(one, bool) or one < 0 for one in shape):
+        raise ValueError(f"an array of shape {shape}; the file is damaged")
     announced, held = math.prod(shape) * dtype.itemsize, size - stream.tell()
     # NumPy refuses objects by itself.
-    if not dtype.hasobject and (announced != held or min(shape, default=0) < 0):
+    if not dtype.hasobject and announced != held:
         raise ValueError(f"shape {shape} takes {announced} bytes, {held} are there")
+    return math.prod(shape)

@@ -119,6 +119,14 @@ def unzip(path: Path, most: int) -> bytes:
     return content
 
 
+def require_room(name: str, count: int) -> None:
+    """Refuse packed numbers that are too many once each has the 8 bytes that all are read to."""
+    if 8 * count > LARGEST_UNPACKED:
+        raise ValueError(
+            f"{name!r} unpacks to {count} numbers; reduce the model, or save it unpacked"
+        )
+
+
 def inflate(body: memoryview | bytes, size: int) -> bytes:
     """Return what zlib packed, which must be `size` bytes, and at most `LARGEST_UNPACKED`."""
     if size > LARGEST_UNPACKED:

@@ -10,7 +10,7 @@ from typing import Any, ClassVar, get_args
 
 import numpy as np
 
-from stickslip.checks import choice, text, whole_number
+from stickslip.checks import brief, choice, text, whole_number
 from stickslip.errors import ModelError
 from stickslip.model import PointRef
 from stickslip.results.arrays import (
@@ -115,7 +115,9 @@ class PeriodicMotions(ColumnResult):
         """
         count = self.arrays.omega.size
         if isinstance(index, bool) or not isinstance(index, Integral):
-            raise ModelError(f"index: {index!r} is not an integer; see omega for the positions")
+            raise ModelError(
+                f"index: {brief(index)} is not an integer; see omega for the positions"
+            )
         if not -count <= index < count:
             raise ModelError(f"index: {index}; there are {count} points, 0 to {count - 1}")
         return int(index) % count
