@@ -17,6 +17,7 @@ import numpy as np
 
 from stickslip.checks import listed, unknown
 from stickslip.errors import CallError, ModelError
+from stickslip.misuse import FOREIGN, flags, misuse, require_flag
 
 _PACKAGE = __name__.partition(".")[0]
 _WRAPPED = "__stickslip_checked__"
@@ -67,27 +68,44 @@ def _check_class(owner: type) -> None:
 
 
 def _checked_function(function: FunctionType) -> Callable[..., Any]:
+    switches = flags(function)
+
     @wraps(function)
     def call(*args: Any, **keywords: Any) -> Any:
         for value in (*args, *keywords.values()):
             if _has_mask(value):
                 raise _masked(function, args, keywords)
+        for place, name in switches:
+            require_flag(args[place] if place < len(args) else keywords.get(name), name)
         try:
             result = function(*args, **keywords)
-        except TypeError as error:
-            # Only the call itself has no frame of its own: errors from inside are none of ours.
-            if error.__traceback__ is None or error.__traceback__.tb_next is not None:
+        except FOREIGN as error:
+            refused = isinstance(error, ModelError)
+            reason = None if refused else _reason(function, args, keywords, error)
+            if reason is None:
                 raise
-            message = misfit(function, args, keywords)
-            if message is None:
-                raise
-            raise CallError(message) from None
+            raise reason from None
         if type(result) not in _done:
             _check_class(type(result))
         return result
 
     setattr(call, _WRAPPED, True)
     return call
+
+
+def _reason(
+    function: FunctionType,
+    args: tuple[object, ...],
+    keywords: Mapping[str, object],
+    error: Exception,
+) -> ModelError | None:
+    """Return what is wrong with a call that failed; None if nothing is found."""
+    trace = error.__traceback__
+    # Only the call itself has no frame of its own.
+    if isinstance(error, TypeError) and trace is not None and trace.tb_next is None:
+        message = misfit(function, args, keywords)
+        return None if message is None else CallError(message)
+    return misuse(function, args, keywords)
 
 
 def _has_mask(value: object, depth: int = 0) -> bool:

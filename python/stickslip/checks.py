@@ -7,7 +7,8 @@ import os
 import re
 import stat
 import unicodedata
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Generator, Iterable, Sequence
+from contextlib import suppress
 from importlib import import_module
 from numbers import Integral, Real
 from pathlib import Path
@@ -33,6 +34,7 @@ _FEW = 3
 # Unicode's control characters, line ends and halves of characters.
 _NO_TEXT = frozenset({"Cc", "Cs", "Zl", "Zp"})
 _LONGEST = 60
+_LONGEST_PATH = 4096
 # A sign, zeros and a point before a digit that is none: the mantissa of a number that is not 0.
 _NOT_ZERO = re.compile(r"\s*[+-]?[0._]*[1-9]")
 _Member = TypeVar("_Member")
@@ -132,14 +134,43 @@ def choice(value: object, entry: str, choices: Iterable[str]) -> str:
 
 def members(value: Iterable[_Member], entry: str, remedy: str) -> tuple[_Member, ...]:
     """Return the members of a list, or of anything else that can be gone through."""
-    try:
-        # The array without dimensions is an `Iterable`, and fails only here.
-        walk = None if isinstance(value, str | bytes) else iter(value)
-    except TypeError:
-        walk = None
-    if walk is None:
+    found = as_list(value)
+    if found is None:
         raise ModelError(f"{entry}: {brief(value)} is not a list; write {remedy}")
-    return tuple(walk)
+    return found
+
+
+def as_list(value: object) -> tuple[Any, ...] | None:
+    """Return the members of anything but text that can be gone through; None if it cannot.
+
+    The array without dimensions is an `Iterable`, and fails only when it is.
+    """
+    if isinstance(value, Generator):
+        # What it raises is the caller's own.
+        return tuple(value)
+    try:
+        return None if isinstance(value, str | bytes) else tuple(value)  # type: ignore[arg-type]
+    except (TypeError, LookupError):
+        return None
+
+
+def real_array(value: object, entry: str, remedy: str) -> NDArray[np.float64]:
+    """Return an array of real numbers, of any shape, as a copy."""
+    with suppress(TypeError, ValueError, OverflowError):
+        array = np.asarray(value)
+        if array.dtype.kind in "iuf":
+            return array.astype(np.float64)
+    raise ModelError(f"{entry}: {brief(value)} holds no real numbers; give {remedy}")
+
+
+def whole_array(value: object, entry: str, remedy: str) -> NDArray[np.int64]:
+    """Return an array of whole numbers, of any shape, as a copy."""
+    with suppress(TypeError, ValueError, OverflowError):
+        array = np.asarray(value)
+        # The empty list is one of real numbers.
+        if array.dtype.kind in "iu" or not array.size:
+            return array.astype(np.int64)
+    raise ModelError(f"{entry}: {brief(value)} holds no whole numbers; give {remedy}")
 
 
 def optional_package(module: str, entry: str, package: str = "", extra: str = "fe") -> Any:
@@ -159,6 +190,13 @@ def file_path(path: object, entry: str) -> Path:
     name = os.fspath(path)
     if not isinstance(name, str) or not name or "\0" in name:
         raise ModelError(f"{entry}: {brief(path)} is no file name; give one in quotes")
+    if len(name) > _LONGEST_PATH:
+        raise ModelError(
+            f"{entry}: {brief(path)} cannot be read or written; give a name of at most "
+            f"{_LONGEST_PATH} characters"
+        )
+    if any(unicodedata.category(character) == "Cc" for character in name):
+        raise ModelError(f"{entry}: {brief(path)} has a control character; give a name without")
     try:
         os.fsencode(name)
     except UnicodeEncodeError:

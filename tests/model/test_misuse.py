@@ -370,7 +370,7 @@ HALF = np.ma.masked_array(np.eye(3) * 1e4, mask=np.eye(3) > 0.0)
         ("slip_forces", lambda given: ss.ParallelJenkins("a", stiffness=(1, 2), slip_forces=given)),
         ("amplitude", lambda given: ss.Measurement([1.0, 2.0, 3.0], "tip", given)),
         ("axes", lambda given: ss.basin_map(BEAM, {"tip": given, "damper": given})),
-        ("values", lambda given: ss.io.Frf([1.0, 2.0, 3.0], given, "a", "b")),
+        ("values", lambda given: ss.Frf([1.0, 2.0, 3.0], given, "a", "b")),
         ("pattern", lambda given: disk("ps.z").mistuned(list(MASKED) * 2)),
         ("nodes", lambda given: ss.Mesh(HALF)),
     ],

@@ -156,7 +156,12 @@ def spinning(
     """
     added = real_matrix(stiffening, "stiffening")
     if softening is not None:
-        added = added - real_matrix(softening, "softening")
+        taken = real_matrix(softening, "softening")
+        if taken.shape != added.shape:
+            raise ModelError(
+                f"softening: {taken.shape}, but stiffening is {added.shape}; give as many"
+            )
+        added = added - taken
     if added.shape != structure.stiffness.shape:
         raise ModelError(
             f"stiffening: {added.shape} for a structure of {len(structure)} dofs; give as many"

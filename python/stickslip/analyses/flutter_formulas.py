@@ -70,10 +70,16 @@ def single_harmonic_cycles(
 
     # share = onset / A runs from 0, endless slip, to 1, the onset of slip; the excess is positive
     # at both ends, and has one minimum in between.
-    least = minimize_scalar(excess, bounds=(0.0, 1.0), method="bounded", options={"xatol": 1e-12}).x
-    if excess(least) > 0.0:
-        return ()
-    shares = [brentq(excess, least, end, xtol=1e-300, rtol=1e-15) for end in (1.0, 0.0)]
+    try:
+        found = minimize_scalar(excess, bounds=(0, 1), method="bounded", options={"xatol": 1e-12})
+        if excess(found.x) > 0.0:
+            return ()
+        shares = [brentq(excess, found.x, end, xtol=1e-300, rtol=1e-15) for end in (1.0, 0.0)]
+    except (OverflowError, RuntimeError):
+        raise ModelError(
+            f"single_harmonic_cycles: mass {m:g}, stiffness {k:g} and {kd:g}, damping {c:g} are of "
+            "too different size for numbers; look at their units"
+        ) from None
     return tuple(SingleCycle(onset / share, omega(share)) for share in shares)
 
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from operator import methodcaller
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
-from stickslip.checks import brief, listed, unknown
+from stickslip.checks import as_list, brief, listed, unknown
 from stickslip.errors import ModelError
 from stickslip.model import Model, PointRef, natural_frequencies
 from stickslip.model.configurations import every_point
@@ -56,12 +56,9 @@ def chosen_contacts(
         return ()
     if contacts is None:
         return _all_contacts(parameter, model, common, known)
-    given: list[PointRef]
-    if isinstance(contacts, str | int) or _is_point(contacts):
-        given = [contacts]  # type: ignore[list-item]
-    elif isinstance(contacts, Iterable):
-        given = list(contacts)
-    else:
+    one = isinstance(contacts, str | int) or _is_point(contacts)
+    given: tuple[Any, ...] | None = (contacts,) if one else as_list(contacts)
+    if given is None:
         raise ModelError(f"contacts: {brief(contacts)} is not a list of contacts")
     if not given:
         raise ModelError("contacts: empty; name at least one, or leave it out for all")

@@ -13,7 +13,7 @@ from typing import NamedTuple, Protocol, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.checks import brief, real_number
+from stickslip.checks import as_list, brief, real_number
 from stickslip.errors import ModelError
 from stickslip.model.structure import Structure
 
@@ -193,9 +193,10 @@ def _kept(given: object, name: str, *, real: bool) -> dict[int, complex]:
 
 
 def _numbered(given: object, name: str) -> list[tuple[int, object]]:
-    if isinstance(given, str | bytes) or not hasattr(given, "__iter__"):
+    found = as_list(given)
+    if found is None:
         raise ModelError(f"{name}: {brief(given)}; give a number per nodal diameter, 0 to n-1")
-    return list(enumerate(given))
+    return list(enumerate(found))
 
 
 def _placed(given: object, sectors: int, name: str) -> NDArray[np.complex128]:

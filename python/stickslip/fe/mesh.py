@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
@@ -12,10 +13,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.checks import (
+    as_list,
     brief,
+    members,
+    real_array,
     real_number,
     set_fields,
     unknown,
+    whole_array,
     whole_number,
 )
 from stickslip.errors import ModelError
@@ -71,25 +76,35 @@ class Mesh:
         node_sets: Mapping[str, ArrayLike] | None = None,
         surfaces: Mapping[str, Sequence[ArrayLike]] | None = None,
     ) -> None:
-        places = np.array(nodes, np.float64)
+        places = real_array(nodes, "mesh: nodes", "three coordinates each")
         if places.ndim != 2 or places.shape[1] != 3 or not places.size:
             raise ModelError(f"mesh: nodes of shape {places.shape}; give three coordinates each")
         if not np.isfinite(places).all():
             raise ModelError("mesh: a coordinate is not finite")
         count = len(places)
-        known = np.arange(1, count + 1) if numbers is None else np.array(numbers, np.int64)
+        known = (
+            np.arange(1, count + 1)
+            if numbers is None
+            else whole_array(numbers, "mesh: numbers", "one per node")
+        )
         if known.shape != (count,) or np.unique(known).size < count:
             raise ModelError(
                 f"mesh: {known.size} numbers, {np.unique(known).size} of them different, for "
                 f"{count} nodes; give numbers=, one per node"
             )
-        elements = tuple((str(kind), np.array(of, np.int64)) for kind, of in cells)
+        elements = tuple(_cells(members(cells, "mesh: cells", "[(kind, nodes), ...]")))
         for kind, of in elements:
             if of.ndim != 2 or ((of < 0) | (of >= count)).any():
                 raise ModelError(f"mesh: a {kind} has a node that is not among the {count}")
-        sets = {name: np.array(own, np.int64) for name, own in (node_sets or {}).items()}
+        sets = {
+            name: whole_array(own, f"mesh: node set {name}", "positions of nodes")
+            for name, own in (node_sets or {}).items()
+        }
         faces = {
-            name: tuple(np.array(one, np.int64) for one in own)
+            name: tuple(
+                whole_array(one, f"mesh: surface {name}", "positions of the nodes of each face")
+                for one in own
+            )
             for name, own in (surfaces or {}).items()
         }
         for name, own in [*sets.items(), *((n, f) for n, many in faces.items() for f in many)]:
@@ -135,7 +150,10 @@ class Mesh:
             among = np.zeros(len(self.numbers), dtype=bool)
             among[self.node_sets[part]] = True
         else:
-            entry, among = "surface", np.asarray(part)
+            entry, among = "surface", np.zeros(0)
+            with suppress(ValueError):
+                # Rows of unequal length.
+                among = np.asarray(part)
             if among.dtype != bool or among.shape != self.numbers.shape:
                 raise ModelError(
                     f"surface: {brief(part)}; give a name, or True and False for the "
@@ -162,7 +180,7 @@ class Mesh:
         ModelError
             If no node is that near.
         """
-        place = np.array(point, np.float64)
+        place = real_array(point, "point", "three coordinates")
         if place.shape != (3,) or not np.isfinite(place).all():
             raise ModelError(f"point: {brief(point)} has not three finite coordinates")
         distances = np.linalg.norm(self.nodes - place, axis=1)
@@ -344,3 +362,12 @@ def _rows_of(reduction: Reduction) -> tuple[str, ...]:
     if reduction.row_names is None:
         raise ModelError("reduction: its rows have no names; give dofs= to craig_bampton")
     return reduction.row_names
+
+
+def _cells(given: Iterable[object]) -> Iterator[tuple[str, Places]]:
+    """Give the elements of each kind, a table of the positions of their nodes."""
+    for pair in given:
+        parts = as_list(pair)
+        if parts is None or len(parts) != 2:
+            raise ModelError(f"mesh: cells: {brief(pair)} is no pair; give (kind, nodes)")
+        yield str(parts[0]), whole_array(parts[1], f"mesh: {parts[0]}", "positions of nodes")

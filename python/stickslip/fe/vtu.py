@@ -22,8 +22,8 @@ def write_vtu(
     fields: Mapping[str, ArrayLike],
 ) -> None:
     """Write nodes, elements and nodal fields for ParaView; see `Mesh.write_vtu`."""
-    meshio = optional_package("meshio", f"{path}: .vtu files")
     file = file_path(path, "path")
+    meshio = optional_package("meshio", f"{file}: .vtu files")
     values = {name: np.asarray(value) for name, value in fields.items()}
     for name, value in values.items():
         if value.shape not in ((len(nodes),), (len(nodes), 3)) or value.dtype.kind not in "fiub":

@@ -7,7 +7,7 @@ import warnings
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Literal, TypeAlias, Union
 
-from stickslip.checks import brief, choice, file_path, members, text
+from stickslip.checks import as_list, brief, choice, file_path, members, text
 from stickslip.errors import ModelError
 from stickslip.files import require_place, write
 from stickslip.results.result import Result
@@ -107,9 +107,10 @@ def _entries(results: object) -> list[Entry]:
     neither = "is neither a result nor a file of one"
     if isinstance(results, Result | str | os.PathLike):
         results = [results]
-    if not isinstance(results, Iterable):
+    found = as_list(results)
+    if found is None:
         raise ModelError(f"results: {brief(results)} {neither}")
-    named: list[tuple[str, object]] = [("", one) for one in results]
+    named: list[tuple[str, object]] = [("", one) for one in found]
     if isinstance(results, Mapping):
         named = [(text(name, "name of a result"), one) for name, one in results.items()]
     if not named:

@@ -20,6 +20,7 @@ from stickslip.checks import (
     file_path,
     members,
     optional_package,
+    real_array,
     set_fields,
     text,
 )
@@ -103,7 +104,8 @@ class Frf:
         quantity: Quantity = "displacement",
         about: str = "",
     ) -> None:
-        frequency, motion = np.array(omega, np.float64), np.array(values, np.complex128)
+        frequency = real_array(omega, "frf: omega", "a list of frequencies")
+        motion = np.array(values, np.complex128)
         if frequency.ndim != 1 or frequency.shape != motion.shape or frequency.size < 2:
             raise ModelError(
                 f"frf: {frequency.shape} frequencies, {motion.shape} values; give two lists of one "
@@ -120,7 +122,7 @@ class Frf:
             dof=text(dof, "frf: dof"),
             reference=text(reference, "frf: reference"),
             quantity=choice(quantity, "frf: quantity", _DERIVATIVES),
-            about=about and text(about, "frf: about", lines=True),
+            about=about if about == "" else text(about, "frf: about", lines=True),
         )
 
     @classmethod
@@ -197,6 +199,9 @@ def write_frf(path: str | os.PathLike[str], functions: Frf | Iterable[Frf]) -> N
     """
     file = file_path(path, "path")
     given = (functions,) if isinstance(functions, Frf) else members(functions, "frf", "[frf, ...]")
+    for one in given:
+        if not isinstance(one, Frf):
+            raise ModelError(f"frf: {brief(one)} is not an Frf; give ss.Frf(...)")
     write(file, universal_file(file, given))
 
 

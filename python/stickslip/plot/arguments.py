@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from typing import TypeVar
 
-import numpy as np
-
-from stickslip.checks import brief, text
+from stickslip.checks import as_list, brief, text
 from stickslip.errors import ModelError
 from stickslip.results import ForcedResponse
 from stickslip.settings.variation import Variation
@@ -43,9 +41,10 @@ def several(
     kind: type[_Kind], results: object, over: Callable[[_Kind], str] = lambda _: ""
 ) -> list[_Kind]:
     """Return one or several results of a kind, all of one parameter, as a list."""
-    if isinstance(results, str) or not isinstance(results, Iterable):
+    found = as_list(results)
+    if found is None:
         return [of_kind(kind, results, "results")]
-    given = [of_kind(kind, one, f"results[{place}]") for place, one in enumerate(results)]
+    given = [of_kind(kind, one, f"results[{place}]") for place, one in enumerate(found)]
     if not given:
         raise ModelError(f"results: empty; give at least one {kind.__name__}")
     parameters = sorted({over(one) for one in given})
@@ -56,9 +55,10 @@ def several(
 
 def dofs_of(dof: object) -> list[str]:
     """Return one or several names of degrees of freedom as a list that is not empty."""
-    if isinstance(dof, str) or not isinstance(dof, Iterable):
+    found = as_list(dof)
+    if found is None:
         return [text(dof, "dof")]
-    names = [text(one, f"dof[{place}]") for place, one in enumerate(dof)]
+    names = [text(one, f"dof[{place}]") for place, one in enumerate(found)]
     if not names:
         raise ModelError("dof: empty; name at least one")
     return names
@@ -68,9 +68,10 @@ def checked_labels(labels: object, default: Sequence[str]) -> Sequence[str]:
     """Return the labels of results, one each, or the default ones."""
     if labels is None:
         return default
-    if isinstance(labels, str) or not isinstance(labels, Iterable):
+    found = as_list(labels)
+    if found is None:
         raise ModelError(f"labels: {brief(labels)} is not a list; give one text per result")
-    given = [text(label, f"labels[{place}]") for place, label in enumerate(labels)]
+    given = [text(label, f"labels[{place}]") for place, label in enumerate(found)]
     if len(given) != len(default):
         raise ModelError(f"labels: {len(given)} for {len(default)} results; give one each")
     return given
@@ -78,7 +79,8 @@ def checked_labels(labels: object, default: Sequence[str]) -> Sequence[str]:
 
 def solved_points(result: ForcedResponse, index: int | Sequence[int]) -> list[int]:
     """Return one or several points of a sweep as a list; refuse those without a solution."""
-    indices = list(index) if isinstance(index, Sequence | np.ndarray) else [index]
+    found = as_list(index)
+    indices = (index,) if found is None else found
     if not indices:
         raise ModelError("index: empty; give the position of at least one point")
     points = [result.position(one) for one in indices]

@@ -81,6 +81,8 @@ def blade_curves(
     observed = result.blades(dof)
     given = observed if blades is None else members(blades, "blades", "blades=[0, 1]")
     chosen = [whole_number(blade, "blades") for blade in given]
+    if not chosen:
+        raise ModelError("blades: empty; give at least one, or leave it out for all")
     for blade in chosen:
         if blade not in observed:
             raise ModelError(f"blades: {blade} was not observed at {dof!r}; observed: {observed}")

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.ticker import MaxNLocator
 
-from stickslip.checks import brief, members, whole_number
+from stickslip.checks import brief, members, real_array, whole_number
 from stickslip.disk import BladedDisk, NodalDiameters
 from stickslip.disk.waves import AerodynamicWaves
 from stickslip.errors import ModelError
@@ -154,7 +154,11 @@ def aerodynamic_limits(
         raise ModelError("result: friction holds no negative damping, so that nothing is drawn")
     given = options["aerodynamic_ratio"]
     lowest = 1.1 * float(np.nanmin(held))
-    ratios = np.linspace(lowest, 0.0, 120) if given is None else np.sort(np.atleast_1d(given))
+    ratios = np.linspace(lowest, 0.0, 120)
+    if given is not None:
+        ratios = np.sort(real_array(given, "aerodynamic_ratio", "a list").ravel())
+    if not ratios.size:
+        raise ModelError("aerodynamic_ratio: empty; give at least one, or leave it out")
     size = result.limit_amplitude(dof, ratios)[order, :, 0]
     if options["length_unit"] == "auto":
         length = style.prefix_of(float(np.nanmax(size, initial=0.0)), "m")

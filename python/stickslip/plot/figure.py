@@ -24,7 +24,7 @@ from matplotlib.axes import Axes
 
 from stickslip import numpydoc
 from stickslip.calls import misfit
-from stickslip.checks import choice
+from stickslip.checks import choice, real_number
 from stickslip.errors import CallError, ModelError
 from stickslip.plot.arguments import of_kind
 from stickslip.plot.style import finish, new_axes
@@ -96,8 +96,11 @@ def _derived(call: Callable[..., Result], written: Callable[..., object]) -> Cal
             raise CallError(str(misfit(drawing, args, given))) from None
         for name, known in choices.items():
             default = signature.parameters[name].default
-            if known and (value := bound.arguments.get(name, default)) is not default:
+            value = bound.arguments.get(name, default)
+            if known and value is not default:
                 choice(value, name, known)
+            if kinds[name] in (float, float | None) and value is not default and value is not None:
+                real_number(value, name)
         if isinstance(kinds[first], type):
             of_kind(kinds[first], bound.arguments[first], first)
         bound.apply_defaults()

@@ -5,13 +5,13 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property
-from typing import NamedTuple, TypeAlias
+from typing import NamedTuple, TypeAlias, get_args
 
 import numpy as np
 
 from stickslip import _core
 from stickslip.calls import outside
-from stickslip.checks import brief
+from stickslip.checks import brief, choice
 from stickslip.disk.wave_ring import moving
 from stickslip.errors import ModelError
 from stickslip.model.model import refusal
@@ -194,6 +194,7 @@ def summits(
     With its degree of freedom, by its position among the group. The range of the computed points
     is searched; no peak is below any of them.
     """
+    choice(measure, "measure", get_args(Measure))
     rows: list[_core.Summit] = []
     low, high = float(result.omega.min()), float(result.omega.max())
     if low < high and result.arrays.solved.any():

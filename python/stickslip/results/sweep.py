@@ -12,6 +12,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from stickslip import _core
+from stickslip.checks import real_number
 from stickslip.drawn import Axes, Drawn, plots
 from stickslip.errors import ModelError
 from stickslip.model import Model
@@ -88,7 +89,8 @@ class Sweep(Result):
 
     def at(self, value: float) -> Result:
         """Return the result at the value nearest to one."""
-        return self.results[int(np.abs(self.values - value).argmin())]
+        near = real_number(value, "value")
+        return self.results[int(np.abs(self.values - near).argmin())]
 
     def plot(self, *args: Any, **options: Any) -> Axes:
         """Draw the family of curves; the arguments are those of the results' own `plot`."""

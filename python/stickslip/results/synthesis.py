@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stickslip.checks import unknown
+from stickslip.checks import brief, unknown
 from stickslip.errors import ModelError
 from stickslip.results.arrays import Complex, Float, constant
 from stickslip.results.mode_shapes import Mode, ModeMotions, ModeShapes, left_out
@@ -177,7 +177,7 @@ def force_vector(mode: Mode, given: object) -> Complex:
     dofs = mode.model.structure.dofs
     for one in forces:
         if not isinstance(one, Force):
-            raise ModelError(f"forces: {one!r} is no Force")
+            raise ModelError(f"forces: {brief(one)} is no Force; give ss.Force(...)")
         if one.dof not in dofs:
             raise ModelError(unknown("dof", one.dof, dofs))
         if one.harmonic == 1:

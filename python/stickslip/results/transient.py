@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Literal, get_args
 
 import numpy as np
 
-from stickslip.checks import choice, text, whole_number
+from stickslip.checks import brief, choice, text, whole_number
 from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
 from stickslip.model import PointRef
@@ -250,7 +250,8 @@ class Transient(ColumnResult):
             )
         except ValueError:
             raise ModelError(
-                f"window: {name!r} is none that its name alone determines; give 'boxcar' or 'hann'"
+                f"window: {brief(name)} is none that its name alone determines; "
+                "give 'boxcar' or 'hann'"
             ) from None
 
     @property

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from pydantic import Field, PlainSerializer
 
-from stickslip.checks import brief, choice, real_number, set_fields, text, whole_number
+from stickslip.checks import brief, choice, members, real_number, set_fields, text, whole_number
 from stickslip.errors import EntryError, ModelError
 from stickslip.settings.entries import ByKey, Dof, Factor, Index, Measure, Some, Table, span_of
 from stickslip.settings.ranges import Or, PeakSpan, numbers, positive
@@ -103,7 +103,10 @@ class Optimum:
         if self.omega is not None:
             set_fields(self, omega=_range(self.omega, "optimum"))
         if self.bounds is not None:
-            low, high = (real_number(one, "optimum: bounds") for one in self.bounds)
+            given = members(self.bounds, "optimum: bounds", "(lowest, highest)")
+            if len(given) != 2:
+                raise ModelError(f"optimum: bounds: {brief(self.bounds)}; give (lowest, highest)")
+            low, high = (real_number(one, "optimum: bounds") for one in given)
             if not 0.0 < low < high:
                 raise ModelError(f"optimum: bounds: ({low:g}, {high:g}); give 0 < lowest < highest")
             set_fields(self, bounds=(low, high))

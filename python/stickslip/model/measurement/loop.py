@@ -79,7 +79,7 @@ class MeasuredLoop(Measured):
                 f"{u.size // 2 - 1}, below half of the {u.size} instants"
             )
         self._keep(
-            of=str(contact),
+            of=brief(contact) if not isinstance(contact, str) else contact,
             abscissa=u,
             observed=f,
             contact=contact,
