@@ -15,14 +15,14 @@ class Disk:
     room : int, optional
         Bytes that are taken before writing fails.
     most : int, optional
-        Bytes that one call takes.
+        Bytes that one call takes once it fails.
     after : int, optional
         Files that are written well before.
     """
 
     def __init__(self, monkeypatch, fails, *, room=0, most=2**30, after=0):
         self.fails, self.room, self.most, self.after = fails, room, most, after
-        self.handles, self.contents = set(), []
+        self.handles, self.contents, self.written = set(), [], 0
         self.calls = {name: getattr(os, name) for name in ("open", "write", "fsync", "close")}
         self.calls["replace"] = os.replace
         for name in self.calls:
@@ -47,7 +47,8 @@ class Disk:
         if len(content) > self.room or "write" not in self.fails:
             if not self.room:
                 self.fail("write")
-            content = content[: min(self.most, self.room or self.most)]
+            most = self.most if self.after <= 0 else len(content)
+            content = content[: min(most, self.room or most)]
         count = self.calls["write"](handle, content)
         self.room = max(self.room - count, 0)
         self.contents[-1] += bytes(content[:count])
@@ -69,6 +70,7 @@ class Disk:
             self.fail("replace")
             self.after -= 1
         self.calls["replace"](source, target)
+        self.written += ".stickslip-" in str(source)
 
 
 def names(folder):

@@ -96,6 +96,8 @@ def entries(folder: Path) -> list[Entry]:
         return []
     try:
         kept = json.loads(file.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise ModelError(f"{file}: cannot be read ({error.strerror})") from None
     except ValueError:
         kept = None
     if not isinstance(kept, list):

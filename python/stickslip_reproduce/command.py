@@ -44,6 +44,7 @@ def reproduce(
 
     stickslip reproduce all --out reproduction
     """
+    from stickslip.cli.console import tell
     from stickslip_reproduce import COARSE, FULL, chosen, write
     from stickslip_reproduce.claims import computed
     from stickslip_reproduce.folder import INDEX
@@ -65,13 +66,13 @@ def reproduce(
             kept = f"{done} of {len(wanted)} complete in {out}"
             raise KeyboardInterrupt(f"{kept}, {item.name} was not finished") from None
         if not quiet:
-            print(f"{item.name:<18} {seconds:6.1f} s  {out / item.name}.png")
+            tell(f"{item.name:<18} {seconds:6.1f} s  {out / item.name}.png")
             for line in key_numbers(numbers):
-                print(f"  {line}")
+                tell(f"  {line}")
     if {"claims", "all"} & set(names):
         _claims(resolution, out, quiet=quiet)
     if not quiet:
-        print(f"index: {out / INDEX}")
+        tell(f"index: {out / INDEX}")
 
 
 def key_numbers(numbers: Numbers) -> Iterator[str]:
@@ -88,6 +89,7 @@ def key_numbers(numbers: Numbers) -> Iterator[str]:
 
 def _claims(resolution: Resolution, out: Path, *, quiet: bool) -> None:
     """Judge what the text claims, and write the page."""
+    from stickslip.cli.console import tell
     from stickslip_reproduce.claims import claims
     from stickslip_reproduce.claims_page import counts, write_claims
     from stickslip_reproduce.folder import write_index
@@ -98,28 +100,29 @@ def _claims(resolution: Resolution, out: Path, *, quiet: bool) -> None:
     for one in claims().values():
         findings.append(one.finding(resolution))
         if not quiet:
-            print(f"{one.section:<6} {findings[-1].verdict:<17} {one.name}")
+            tell(f"{one.section:<6} {findings[-1].verdict:<17} {one.name}")
     kept = write_claims(findings, out)
     write_index(out)
     if not quiet:
-        print(f"claims     {time.perf_counter() - begin:6.1f} s  {out / CLAIMS}")
-        print(counts(kept))
+        tell(f"claims     {time.perf_counter() - begin:6.1f} s  {out / CLAIMS}")
+        tell(counts(kept))
 
 
 def _list() -> None:
     """Print everything numbered with its status and what it takes, and the number of claims."""
+    from stickslip.cli.console import tell
     from stickslip_reproduce import SUBJECTS, costs, items
     from stickslip_reproduce.claims import claims
     from stickslip_reproduce.numbered import NUMBERED
 
     done, measured = items(), costs()
-    print(f"{'name':<18}  {'status':<7}  {'cost [s]':>8}  subject")
+    tell(f"{'name':<18}  {'status':<7}  {'cost [s]':>8}  subject")
     for name, subject in SUBJECTS.items():
         cost = f"{measured[name]:.2g}" if name in done and name in measured else ""
-        print(f"{name:<18}  {'done' if name in done else 'not yet':<7}  {cost:>8}  {subject}")
+        tell(f"{name:<18}  {'done' if name in done else 'not yet':<7}  {cost:>8}  {subject}")
     whole = sum(measured.get(name, 0.0) for name in done)
     for name, (subject, place) in NUMBERED.items():
         status = {"claim": "judged", "none": "left"}.get(place.partition(" ")[0], "given")
-        print(f"{name:<18}  {status:<7}  {'':>8}  {subject}: {place}")
-    print(f"{len(done)} of {len(SUBJECTS)} are reproduced, all of them in {whole:.0f} s")
-    print(f"{len(claims())} claims of the text have verdicts: stickslip reproduce claims")
+        tell(f"{name:<18}  {status:<7}  {'':>8}  {subject}: {place}")
+    tell(f"{len(done)} of {len(SUBJECTS)} are reproduced, all of them in {whole:.0f} s")
+    tell(f"{len(claims())} claims of the text have verdicts: stickslip reproduce claims")

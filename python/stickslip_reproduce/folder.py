@@ -129,6 +129,8 @@ def records(folder: Path) -> dict[str, dict[str, Any]]:
 def _record(file: Path) -> dict[str, Any]:
     try:
         record = json.loads(file.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise ModelError(f"{file}: cannot be read ({error.strerror})") from None
     except ValueError:
         record = None
     if not isinstance(record, dict) or not record.keys() >= _KEYS:

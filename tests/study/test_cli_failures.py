@@ -208,6 +208,7 @@ def test_a_reader_that_leaves_stops_nothing(folder):
     [
         ("--version", ">/dev/full", 2, "error: standard output: No space left on device; results"),
         ("run --help", ">/dev/full", 2, "error: standard output: No space left on device; results"),
+        ("reproduce list", ">/dev/full", 2, "error: standard output: No space left on device; "),
         ("show none.nc", "2>/dev/full", 2, ""),
         ("show none.nc", ">&- 2>&-", 2, ""),
         ("--version", ">&-", 0, ""),

@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+import tempfile
 import threading
 from pathlib import Path
 
@@ -319,7 +320,7 @@ def test_only_finite_numbers_are_taken(session, value):
 
 
 @pytest.mark.slow
-def test_a_picture_has_all_that_is_shown(session, tmp_path):
+def test_a_picture_has_all_that_is_shown(session, tmp_path, monkeypatch):
     file = tmp_path / "small.toml"
     file.write_text(SMALL)
     page, told = session(file)
@@ -327,8 +328,11 @@ def test_a_picture_has_all_that_is_shown(session, tmp_path):
     assert "nothing is drawn yet" in told.until(lambda one: "refused" in one)["refused"]
     page.take(asked(page))
     told.pane(1, "damper")
-    page.take(asked(page, want="picture"))
-    assert told.until(lambda one: "picture" in one)["file"] == "small-explored.png"
+    with monkeypatch.context() as patch:
+        # It is made in memory.
+        patch.setattr(tempfile, "tempdir", str(tmp_path / "missing"))
+        page.take(asked(page, want="picture"))
+        assert told.until(lambda one: "picture" in one)["file"] == "small-explored.png"
 
 
 # ------------------------------------------------------------------------------ the damper curve

@@ -8,7 +8,6 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any, Literal, NamedTuple, cast
 
 from pydantic import BaseModel, ConfigDict, ValidationError
@@ -23,7 +22,7 @@ from stickslip.model.notable import physical_dofs
 from stickslip.results.forced_response import ForcedResponse
 from stickslip.settings.variation import Parameter
 from stickslip.study import Study
-from stickslip.views.picture import Panel, draw
+from stickslip.views.picture import Panel, drawn_as
 
 Tell = Callable[[dict[str, Any]], None]
 
@@ -207,11 +206,8 @@ class Session:
         try:
             if not panels:
                 raise ModelError("picture: nothing is drawn yet; wait for the curve")
-            with TemporaryDirectory() as folder:
-                file = Path(folder) / name
-                with panes.ONE_DRAWS:
-                    draw(panels, file)
-                data = base64.b64encode(file.read_bytes()).decode()
+            with panes.ONE_DRAWS:
+                data = base64.b64encode(drawn_as(panels, ".png", name)).decode()
         except Exception as error:
             self._tell({"refused": _line(error)})
         else:

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip.checks import brief, file_path, optional_package
 from stickslip.errors import ModelError
-from stickslip.files import refusal, write
+from stickslip.files import write
 
 
 def write_vtu(
@@ -40,5 +40,9 @@ def write_vtu(
             mesh.write(made)
             content = made.read_bytes()
     except OSError as error:
-        raise refusal(file, "cannot be written", error) from error
+        cause = error.strerror or str(error) or type(error).__name__
+        raise ModelError(
+            f"{file}: meshio needs a folder for temporary files, which fails ({cause}); make room "
+            "there, or name another in the variable TMPDIR"
+        ) from error
     write(file, content)

@@ -39,21 +39,27 @@ def draw(panels: Sequence[Panel], file: Path) -> None:
         If the format is unknown, a panel refuses what it is to draw, or the picture cannot be
         written.
     """
+    content = drawn_as(panels, file.suffix, str(file))
+    make_folder(file.parent)
+    write(file, content)
+
+
+def drawn_as(panels: Sequence[Panel], suffix: str, entry: str) -> memoryview:
+    """Return the bytes of a picture, in the format of an ending; see `draw`."""
     from matplotlib.figure import Figure
 
     # made without pyplot: no window system is asked for, and nothing stays open
     figure = Figure(figsize=(7.0, 0.6 + 3.9 * len(panels)), layout="constrained")
     known = figure.canvas.get_supported_filetypes()
-    kind = file.suffix.lstrip(".").lower()
+    kind = suffix.lstrip(".").lower()
     if kind not in known:
         kinds = ", ".join(f".{kind}" for kind in sorted(known))
-        raise ModelError(f"{file}: '{file.suffix}' is no format of pictures; known: {kinds}")
+        raise ModelError(f"{entry}: '{suffix}' is no format of pictures; known: {kinds}")
     for row, panel in enumerate(panels):
         panel(ax=figure.add_subplot(len(panels), 1, row + 1))
     picture = io.BytesIO()
     figure.savefig(picture, format=kind, dpi=150)
-    make_folder(file.parent)
-    write(file, picture.getbuffer())
+    return picture.getbuffer()
 
 
 def titled(panel: Panel, name: str) -> Panel:
