@@ -53,3 +53,33 @@ stiffness = [[2.0, -1.0], [-1.0, 2.0]]
 damping = { modal = "1 %" }
 dofs = ["tip", "root"]
 """
+
+# A disk of one mass per sector.
+MISTUNED = """
+name = "ring"
+[structure]
+mass = [[1]]
+stiffness = [[1000]]
+damping = [[0.3]]
+dofs = ["tip"]
+[[contact]]
+law = "jenkins"
+dof = "tip"
+stiffness = 100
+slip_force = 1
+[[force]]
+dof = "tip"
+amplitude = 1
+[[coupling]]
+dof = "tip"
+stiffness = 50
+[disk]
+sectors = 6
+engine_order = 1
+[analysis]
+kind = "mistuning-study"
+omega = {from = 25, to = 45}
+deviation = 0.02
+patterns = 60
+harmonics = 1
+"""

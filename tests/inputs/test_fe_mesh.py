@@ -230,6 +230,9 @@ def test_a_response_without_all_dofs_or_of_another_structure_is_refused(mesh, re
     ("name", "content", "message"),
     [
         ("a.inp", "*NODE\n1, zero\n", "a.inp: cannot be read as deck"),
+        ("a.inp", "*NODE\n1, zero\n", "line 2: 'ZERO' is no real number; write the file again"),
+        ("a.bdf", "BEGIN BULK\nGRID,1,,0.,zero,0.\n", "a.bdf: cannot be read as mesh: line 2: 'ze"),
+        ("a.bdf", "BEGIN BULK\n\nGRID,x,,0.,0.,0.\n", "line 3: 'x' stands where a whole number m"),
         ("a.inp", "no deck", "a.inp: cannot be read as deck: it has no *NODE"),
         ("a.inp", "", "a.inp: cannot be read as deck: it has no *NODE"),
         ("a.txt", "1 2 3", "a.txt: cannot be read as mesh: Could not deduce file format"),

@@ -14,6 +14,7 @@ import pytest
 import stickslip as ss
 from beam_study import COMMAND, invoke
 from failing_disk import Disk, names
+from small_study import MISTUNED
 from stickslip.reference import snecma_beam
 
 
@@ -78,36 +79,6 @@ def test_an_interrupted_study_on_a_full_disk_ends_in_one_line(folder, monkeypatc
     assert first == "interrupted: saving what was computed"
     path = Path("results", "beam-6.563-partial.nc")
     assert line.startswith(f"error: {path}: cannot be written (No space left on device)")
-
-
-MISTUNED = """
-name = "ring"
-[structure]
-mass = [[1]]
-stiffness = [[1000]]
-damping = [[0.3]]
-dofs = ["tip"]
-[[contact]]
-law = "jenkins"
-dof = "tip"
-stiffness = 100
-slip_force = 1
-[[force]]
-dof = "tip"
-amplitude = 1
-[[coupling]]
-dof = "tip"
-stiffness = 50
-[disk]
-sectors = 6
-engine_order = 1
-[analysis]
-kind = "mistuning-study"
-omega = {from = 25, to = 45}
-deviation = 0.02
-patterns = 60
-harmonics = 1
-"""
 
 
 def limited(size, *arguments):

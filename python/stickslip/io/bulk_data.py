@@ -9,7 +9,7 @@ from collections.abc import Container, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from stickslip.io.numbers import whole_field
+from stickslip.io.numbers import real_field, whole_field
 from stickslip.io.source import at_line, plain
 
 _HEAD, _TAIL = 8, 8
@@ -44,6 +44,8 @@ def read_bulk(file: Path) -> Bulk:
             number, *words = card.fields
             if card.name == "GRID":
                 numbers.append(whole_field(number))
+                for place in words[1:4]:
+                    real_field(place or "0")
                 if words[0] not in ("", "0"):
                     raise ValueError(
                         f"GRID {number}: its coordinates are those of system {words[0]}"

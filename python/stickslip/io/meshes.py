@@ -55,6 +55,8 @@ def read_mesh(path: str | os.PathLike[str], numbers: ArrayLike | None = None) ->
         return Mesh(deck.nodes, deck.cells, numbers, deck.node_sets, deck.surfaces)
     with readable(file, "mesh"):
         meshio = optional_package("meshio", f"{file}: meshes")
+        # It names the line of what is wrong, and meshio does not.
+        bulk = read_bulk(file) if file.suffix.lower() in (".bdf", ".nas", ".fem") else None
         said = io.StringIO()
         try:
             with redirect_stdout(said), redirect_stderr(said):
@@ -65,7 +67,6 @@ def read_mesh(path: str | os.PathLike[str], numbers: ArrayLike | None = None) ->
         points = np.asarray(read.points, dtype=np.float64)
         if points.ndim == 2 and points.shape[1] == 2:
             points = np.pad(points, ((0, 0), (0, 1)))
-        bulk = read_bulk(file) if file.suffix.lower() in (".bdf", ".nas", ".fem") else None
         own = bulk.numbers if bulk and numbers is None else numbers
         # Elements whose nodes differ in number, as polyhedra, have no table.
         cells = [(block.type, block.data) for block in read.cells if np.ndim(block.data) == 2]

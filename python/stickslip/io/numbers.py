@@ -124,9 +124,10 @@ def _misfit(lines: list[str], dtype: np.dtype[Any], first: int) -> str | None:
             return f"line {number}: {len(words)} numbers in {line.strip()[:30]!r}, not {len(whole)}"
         for word, counts in zip(words, whole, strict=False):
             try:
-                whole_field(word, signed=True) if counts else real_field(word)
-            except ValueError as error:
-                return f"line {number}: {error}"
+                whole_field(word, signed=True) if counts else float(word.upper().replace("D", "E"))
+            except ValueError:
+                kind = "whole" if counts else "real"
+                return f"line {number}: {word[:40]!r} is no {kind} number that can be read"
     return None
 
 
