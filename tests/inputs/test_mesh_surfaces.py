@@ -51,6 +51,27 @@ def deck(folder, text=DECK):
     return path
 
 
+def test_a_deck_in_millimetres_becomes_metres(tmp_path):
+    path = deck(tmp_path)
+    own = ss.read_mesh(path)
+    mesh = ss.read_mesh(path, units="t-mm-s")
+    assert mesh.nodes == pytest.approx(1e-3 * own.nodes)
+    assert mesh.numbers.tolist() == own.numbers.tolist()
+    interface = ss.ContactInterface.from_surfaces(mesh, "PAD", mesh, "SEAT")
+    # A face of 2 mm by 3 mm.
+    assert interface.areas.sum() == pytest.approx(6e-6)
+    contact = interface.contact(friction=0.3, tangential_stiffness=1e12, normal_stiffness=2e12)
+    assert sum(contact.tangential_stiffness) == pytest.approx(6e6)
+    renumbered = ss.read_mesh(path, np.arange(101, 117), units="t-mm-s")
+    assert renumbered.numbers[0] == 101
+    assert renumbered.nodes == pytest.approx(mesh.nodes)
+    mesh.write_vtu(tmp_path / "joint.vtu", {})
+    other = ss.read_mesh(tmp_path / "joint.vtu", units="kg-mm-s")
+    assert other.nodes == pytest.approx(1e-3 * mesh.nodes)
+    with pytest.raises(ss.ModelError, match="units: 'mm'; give mass, length and time"):
+        ss.read_mesh(path, units="mm")
+
+
 def test_a_deck_gives_surfaces_and_sets(tmp_path):
     mesh = ss.read_mesh(deck(tmp_path))
     interface = ss.ContactInterface.from_surfaces(mesh, "PAD", mesh, "SEAT")

@@ -15,9 +15,12 @@ from stickslip.fe.mesh import Mesh
 from stickslip.io.bulk_data import read_bulk
 from stickslip.io.decks import read_deck
 from stickslip.io.source import readable
+from stickslip.model.matrix_units import MatrixUnits, Units
 
 
-def read_mesh(path: str | os.PathLike[str], numbers: ArrayLike | None = None) -> Mesh:
+def read_mesh(
+    path: str | os.PathLike[str], numbers: ArrayLike | None = None, *, units: Units = None
+) -> Mesh:
     """Read the mesh of a finite-element program.
 
     Parameters
@@ -31,16 +34,20 @@ def read_mesh(path: str | os.PathLike[str], numbers: ArrayLike | None = None) ->
     numbers : array_like of int, optional
         Numbers of the nodes in the order of the file. Default: those of the file in `.inp`,
         `.bdf`, `.nas` and `.fem`, otherwise 1, 2, ...
+    units : str, optional
+        Mass, length and time of the file, as of `Structure`: with "t-mm-s" coordinates in
+        millimetres become metres. Areas of contacts, whose stiffness is in N/m3, need metres.
 
     Returns
     -------
     Mesh
-        In the unit of length of the file.
+        In metres with `units`, otherwise in the unit of length of the file.
 
     Raises
     ------
     ModelError
-        If meshio is needed and missing, or the file is missing, damaged or of an unknown kind.
+        If meshio is needed and missing, units are not known, or the file is missing, damaged or
+        of an unknown kind.
 
     References
     ----------
@@ -48,11 +55,11 @@ def read_mesh(path: str | os.PathLike[str], numbers: ArrayLike | None = None) ->
     MSC Nastran, "Quick Reference Guide", bulk data entries GRID and SET1.
     """
     file = file_path(path, "path")
+    metres = 1.0 if units is None else MatrixUnits.of(units).length
     if file.suffix.lower() == ".inp":
         deck = read_deck(file)
-        if numbers is None:
-            return deck
-        return Mesh(deck.nodes, deck.cells, numbers, deck.node_sets, deck.surfaces)
+        own = deck.numbers if numbers is None else numbers
+        return Mesh(metres * deck.nodes, deck.cells, own, deck.node_sets, deck.surfaces)
     with readable(file, "mesh"):
         meshio = optional_package("meshio", f"{file}: meshes")
         # It names the line of what is wrong, and meshio does not.
@@ -71,6 +78,6 @@ def read_mesh(path: str | os.PathLike[str], numbers: ArrayLike | None = None) ->
         # Elements whose nodes differ in number, as polyhedra, have no table.
         cells = [(block.type, block.data) for block in read.cells if np.ndim(block.data) == 2]
     try:
-        return Mesh(points, cells, own, bulk.node_sets() if bulk else None)
+        return Mesh(metres * points, cells, own, bulk.node_sets() if bulk else None)
     except ModelError as error:
         raise ModelError(f"{file}: {error}") from None
