@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -191,6 +193,27 @@ def test_a_fit_to_backbones_is_saved_and_drawn(fitted, tmp_path):
         np.testing.assert_array_equal(points.get_xdata(), AMPLITUDE)
     with pytest.raises(ss.ModelError, match="draw them with plot_backbone"):
         again.plot()
+
+
+def test_places_without_a_mode_do_not_end_a_fit(monkeypatch):
+    """A trial whose mode has no motion at small amplitudes counts as a misfit."""
+    from stickslip.analyses import prediction
+
+    every, lost = prediction.nonlinear_modes, []
+
+    def failing(model, *, amplitude, **keys):
+        modes = every(model, amplitude=amplitude, **keys)
+        if model.contacts[0].slip_force < 3.0 or len(amplitude) > 1:
+            return modes
+        lost.append(model)
+        nowhere = np.full_like(modes.arrays.displacement, np.nan)
+        return replace(modes, arrays=replace(modes.arrays, displacement=nowhere))
+
+    monkeypatch.setattr(prediction, "nonlinear_modes", failing)
+    tested, keys = noisy(0, dof="tip"), {"harmonics": 1, "intervals": "covariance"}
+    fit = ss.fit(model(slip_force=4.0), tested, parameters=BOUNDS, **keys)
+    assert lost
+    assert fit.values == pytest.approx(TRUE, rel=0.02)
 
 
 @pytest.mark.parametrize(

@@ -154,6 +154,8 @@ def _backbone(
 ) -> _Found:
     wanted, place = np.unique(measured.amplitude, return_inverse=True)
     modes = _modes_at(measured, model, settings, wanted)
+    if modes is None:
+        return _Found(np.full(measured.observed.size, np.nan), 1)
     solved = modes.arrays.status == Status.CONVERGED.code
     columns = {"omega": modes.omega, "damping_ratio": modes.damping_ratio}
     found = [np.where(solved, columns[one], np.nan)[place] for one in measured.columns]
@@ -162,11 +164,11 @@ def _backbone(
 
 def _modes_at(
     measured: MeasuredBackbone, model: Model, settings: HarmonicSettings, wanted: Float
-) -> NonlinearModes:
-    """Return the mode at rising amplitudes of what was measured.
+) -> NonlinearModes | None:
+    """Return the mode at rising amplitudes of what was measured, None if it has no beginning.
 
     The modal amplitude of a displacement is found by the secant method, in logarithms: the two are
-    proportional but for the change of the shape.
+    proportional but for the change of the shape. An amplitude without a motion stays where it is.
     """
     keys = settings.part(HarmonicSettings)
 
@@ -177,6 +179,8 @@ def _modes_at(
         return modes(wanted)
     small = modes(_SMALL * wanted[:1])
     share = small.displacement_amplitude(measured.dof, measured.measure) / small.amplitude
+    if not np.isfinite(share).all():
+        return None
     at, rate = np.log(wanted / share), np.ones(wanted.size)
     before, there = at, np.full(wanted.size, np.nan)
     for _ in range(_STEPS):
