@@ -240,3 +240,13 @@ def test_what_does_not_exist_is_refused():
     mode = ss.nonlinear_modes(chain(), mode=0, amplitude=[1e-3, 1e-2])
     with pytest.raises(ss.ModelError, match="forces"):
         mode.forced_response([ss.Force("x", 1.0, harmonic=3)], [100.0])
+
+
+@pytest.mark.parametrize(("count", "insets"), [(5, 3), (40, 0)])
+def test_shapes_are_drawn_of_few_degrees_of_freedom(count, insets):
+    stiffness = 1e4 * (2.0 * np.eye(count) - np.eye(count, k=1) - np.eye(count, k=-1))
+    chain = ss.Structure(np.eye(count), stiffness, dofs=[f"x{n}" for n in range(count)])
+    model = ss.Model(chain, [ss.Jenkins("x0", stiffness=1e3, slip_force=1.0)])
+    modes = ss.nonlinear_modes(model, amplitude=[1e-3], harmonics=1)
+    ax = modes.plot(damping=False)
+    assert sum(one.get_title() == "shape" for one in ax.child_axes) == insets

@@ -212,6 +212,13 @@ def test_the_map_is_written_and_drawn(tmp_path):
     assert read.cells[0].type == "quad8"
     ax = seen.plot(field="pressure")
     assert len(ax.collections[0].get_paths()) == 6
+    drawn = ax.collections[0]
+    bar = drawn.colorbar.ax
+    assert bar.get_ylabel() == "mean pressure [MPa]"
+    assert bar.yaxis.get_major_formatter()(2e6) == "2"
+    assert ax.get_title().startswith("slips 0 mm², open")
+    # Shares have no unit, and no prefix.
+    assert seen.plot(field="slip").collections[0].colorbar.ax.get_ylabel().endswith("slips")
     with pytest.raises(ss.ModelError, match="did you mean 'pressure'"):
         seen["presure"]
     with pytest.raises(ss.ModelError, match="did you mean 'pressure'"):

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from stickslip.plot.figure import figure
 from stickslip.plot.options import ContactMapOptions
-from stickslip.plot.style import GREY
+from stickslip.plot.style import GREY, Prefixed, prefix_of, prefixed, unit_of
 from stickslip.results.contact_map import ContactMap
 
 _CORNERS = {3: 3, 4: 4, 6: 3, 8: 4}
@@ -22,8 +22,10 @@ _LABELS = {
     "stick": "share of the period that sticks",
     "slip": "share of the period that slips",
     "open": "share of the period that is open",
-    "work": "work per cycle and area [J/m2]",
+    "work": "work per cycle and area [J/m²]",
 }
+_LARGE = 0.1
+"""Area from which square metres are easier to read [m2]."""
 _SHARES = ("stick", "slip", "open")
 
 
@@ -45,12 +47,22 @@ def contact_map(ax: Axes, /, result: ContactMap, **options: Unpack[ContactMapOpt
         drawn.set_clim(0.0, 1.0)
     drawn.set(edgecolor=GREY, linewidth=0.2)
     ax.add_collection(drawn)
-    ax.figure.colorbar(drawn, ax=ax, label=_LABELS[name])
+    bar = ax.figure.colorbar(drawn, ax=ax, label=_LABELS[name])
+    unit = unit_of(_LABELS[name])
+    if unit:
+        scale = prefix_of(float(np.abs(drawn.get_clim()).max()), unit)
+        bar.ax.yaxis.set_major_formatter(Prefixed(scale.factor))
+        bar.set_label(_LABELS[name].replace(f"[{unit}]", f"[{scale.label}]"))
     ax.autoscale_view()
     ax.set_aspect("equal")
     ax.set(xlabel=f"{directions[0]} [m]", ylabel=f"{directions[1]} [m]")
-    totals = f"slips {result.slip_area:.3g} m², open {result.open_area:.3g} m², {result.work:.3g} J"
-    ax.set_title(totals, fontsize="medium")
+    areas = f"slips {_area(result.slip_area)}, open {_area(result.open_area)}"
+    ax.set_title(f"{areas}, {prefixed(result.work, 'J')}", fontsize="medium")
+
+
+def _area(area: float) -> str:
+    """Return an area with its unit; a prefix counts twice in it."""
+    return f"{area:.3g} m²" if area >= _LARGE else f"{1e6 * area:.3g} mm²"
 
 
 def _in_plane(

@@ -20,6 +20,8 @@ from stickslip.results.nonlinear_modes import NonlinearModes
 _AMPLITUDE = r"modal amplitude [m kg$^{1/2}$]"
 _INSETS = (0.08, 0.42, 0.76)
 """Where the shapes stand across the figure of the frequency."""
+_MOST_BARS = 30
+"""Degrees of freedom up to which a bar of a shape is two pixels wide."""
 _BELOW = 0.45
 """Room for them below the frequencies, over the height of these."""
 
@@ -116,7 +118,7 @@ def _band(ax: Axes, one: NonlinearModes, bounds: Float, colour: Colour) -> None:
 
 def _shapes(ax: Axes, mode: NonlinearModes) -> None:
     known = np.flatnonzero(np.isfinite(mode.omega))
-    if not known.size:
+    if not known.size or mode.arrays.displacement.shape[-1] > _MOST_BARS:
         return
     low, high = ax.get_ylim()
     ax.set_ylim(low - _BELOW * (high - low), high)
