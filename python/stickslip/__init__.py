@@ -37,7 +37,7 @@ _NAMES = {
     "SplitDamper StripDamper WedgeDamper",
     "disk": "AerodynamicDamping BladedDisk Coupling InfluenceCoefficients Interface MistunedDisk "
     "ModalForces "
-    "aerodynamic_waves cyclic_sector mistuning_pattern",
+    "aerodynamic_waves cyclic_sector frequency_pattern mistuning_pattern",
     "errors": "Interrupted ModelError",
     "fe": "ContactInterface Mesh Reduction Solid craig_bampton",
     "html.report": "report",

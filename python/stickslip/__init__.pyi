@@ -37,6 +37,7 @@ from stickslip.disk import MistunedDisk as MistunedDisk
 from stickslip.disk import ModalForces as ModalForces
 from stickslip.disk import aerodynamic_waves as aerodynamic_waves
 from stickslip.disk import cyclic_sector as cyclic_sector
+from stickslip.disk import frequency_pattern as frequency_pattern
 from stickslip.disk import mistuning_pattern as mistuning_pattern
 from stickslip.disk.aerodynamics import Aerodynamics
 from stickslip.errors import Interrupted as Interrupted

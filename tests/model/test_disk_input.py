@@ -103,3 +103,27 @@ def test_bad_disks_are_refused_in_one_line(build, message):
     with pytest.raises(ss.ModelError, match=message) as refusal:
         build()
     assert "\n" not in str(refusal.value)
+
+
+def test_deviations_of_frequencies_become_those_of_the_stiffness():
+    """A blade by itself has the frequency that was measured."""
+    blade = ss.Structure([[2.0]], [[800.0]], dofs=["tip"])
+    disk = ss.BladedDisk(blade, sectors=3, engine_order=1, forces=[ss.Force("tip", 1.0)])
+    measured = np.array([0.03, 0.0, -0.02])
+    found = ss.natural_frequencies(disk.mistuned(ss.frequency_pattern(measured)))
+    np.testing.assert_allclose(found, np.sort(20.0 * (1.0 + measured)), rtol=1e-12)
+    assert ss.frequency_pattern([[0.01] * 3] * 4).shape == (4, 3)
+
+
+@pytest.mark.parametrize(
+    ("deviations", "said"),
+    [
+        ([0.01, 2.0], r"deviations\[1\] is 2; give \(f - f0\) / f0, 0.02 for 2 %"),
+        ([[0.0, np.nan]], r"deviations\[0\]\[1\] is nan"),
+        ([-1.0], r"deviations\[0\] is -1"),
+        (["wide"], "holds no real numbers"),
+    ],
+)
+def test_other_deviations_of_frequencies_are_refused(deviations, said):
+    with pytest.raises(ss.ModelError, match=said):
+        ss.frequency_pattern(deviations)

@@ -68,6 +68,16 @@ def test_random_and_given_mistuning():
     assert result.dofs == ("3.tip",)
 
 
+def test_measured_frequencies_make_the_mistuning():
+    table = 'mistuning = { frequency = ["1 %", 0, 0, -0.02, 0, 0] }\n'
+    disk = Study.parse(TUNED.replace(DISK, DISK + table)).model
+    expected = disk.disk.mistuned([0.0201, 0, 0, -0.0396, 0, 0])
+    assert np.allclose(disk.structure.stiffness, expected.structure.stiffness, rtol=1e-14)
+    both = TUNED.replace(DISK, DISK + "mistuning = { deviation = 0.1, frequency = [0.1] }\n")
+    with pytest.raises(ss.ModelError, match="or 'frequency', those of blade frequencies"):
+        Study.parse(both)
+
+
 def test_interface_blocks_and_boundaries():
     block = "stiffness = [[0, 0], [-5, 0]], damping = { rayleigh = { stiffness = 1e-3 } }"
     disk = Study.parse(TUNED.replace(DISK, f"{DISK}interface = {{ {block} }}\n")).model

@@ -5,7 +5,7 @@ from stickslip.disk.aerodynamics import AerodynamicDamping, ModalForces
 from stickslip.disk.bladed_disk import BladedDisk, NodalDiameters
 from stickslip.disk.coupling import Interface, cyclic_sector
 from stickslip.disk.mistuned import MistunedDisk, Ring
-from stickslip.disk.pattern import mistuning_pattern
+from stickslip.disk.pattern import frequency_pattern, mistuning_pattern
 from stickslip.disk.waves import AerodynamicWaves, InfluenceCoefficients, aerodynamic_waves
 from stickslip.model.coupling import Coupling
 
@@ -22,6 +22,7 @@ __all__ = [
     "Ring",
     "aerodynamic_waves",
     "cyclic_sector",
+    "frequency_pattern",
     "mistuning_pattern",
 ]
 

@@ -1,13 +1,13 @@
-"""Random mistuning patterns."""
+"""Mistuning patterns: drawn at random, or from measured frequencies."""
 
 from __future__ import annotations
 
 from typing import Literal, TypeAlias, get_args
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from stickslip.checks import choice, whole_number
+from stickslip.checks import brief, choice, whole_number
 from stickslip.errors import ModelError
 from stickslip.units import physical_number
 
@@ -46,6 +46,41 @@ def mistuning_pattern(
     if size < 0.0:
         raise ModelError(f"deviation: {size:g} is negative; give 0.05 for 5 %")
     return size * _drawn(whole_number(seed, "seed"), count, distribution)
+
+
+def frequency_pattern(deviations: ArrayLike) -> NDArray[np.float64]:
+    """Make deviations of the stiffness of those of blade frequencies, for `BladedDisk.mistuned`.
+
+    Frequencies of blades are measured, and deviate by (f - f0) / f0; stiffness goes with their
+    square.
+
+    Parameters
+    ----------
+    deviations : array_like of float
+        Relative deviations of the frequencies of blades, 0.02 for 2 %: of any shape, one disk
+        (sectors,), or many (patterns, sectors).
+
+    Returns
+    -------
+    ndarray of float
+        Deviations of the stiffness, (1 + deviation)^2 - 1, of the same shape.
+
+    Raises
+    ------
+    ModelError
+        If a deviation is not finite, or not between -1 and 1.
+    """
+    try:
+        relative = np.asarray(deviations, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ModelError(f"deviations: {brief(deviations)} holds no real numbers") from None
+    wrong = np.argwhere(~(np.abs(relative) < 1.0))
+    if wrong.size:
+        place = "".join(f"[{one}]" for one in wrong[0])
+        raise ModelError(
+            f"deviations{place} is {relative[tuple(wrong[0])]:g}; give (f - f0) / f0, 0.02 for 2 %"
+        )
+    return relative * (2.0 + relative)
 
 
 def drawn_patterns(

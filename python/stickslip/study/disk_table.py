@@ -12,7 +12,7 @@ from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from stickslip.checks import brief
 from stickslip.disk import Coupling
-from stickslip.disk.pattern import mistuning_pattern
+from stickslip.disk.pattern import frequency_pattern, mistuning_pattern
 from stickslip.errors import EntryError
 from stickslip.settings.entries import (
     ONE_OF,
@@ -72,6 +72,11 @@ class MistuningTable(Table):
         description="Deviation of each sector; left out: drawn at random.",
         examples=[[0.02, "-3 %", 0.0]],
     )
+    frequency: Some[Ratio] | None = Field(
+        default=None,
+        description="Instead: deviation of the natural frequency of each blade, as measured.",
+        examples=[["1 %", "-1.5 %", 0.0]],
+    )
     deviation: Ratio | None = Field(
         default=None, description="Standard deviation of the random ones.", examples=["7 %"]
     )
@@ -82,12 +87,18 @@ class MistuningTable(Table):
 
     @model_validator(mode="after")
     def _require_one_kind(self) -> Self:
-        if (self.pattern is None) == (self.deviation is None):
-            raise ValueError("give either 'pattern', the deviations, or 'deviation', their size")
+        kinds = (self.pattern, self.frequency, self.deviation)
+        if sum(one is not None for one in kinds) != 1:
+            raise ValueError(
+                "give either 'pattern', the deviations, or 'frequency', those of blade "
+                "frequencies, or 'deviation', their size"
+            )
         return self
 
     def values(self, sectors: int) -> NDArray[np.float64]:
         """Return the deviations of all sectors."""
+        if self.frequency is not None:
+            return frequency_pattern(self.frequency)
         if self.deviation is None:
             return np.array(self.pattern, dtype=np.float64)
         return mistuning_pattern(sectors, self.deviation, self.distribution, seed=self.seed)
