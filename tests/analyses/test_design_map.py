@@ -57,10 +57,36 @@ def test_a_peak_that_wants_more_harmonics_says_so():
     assert np.isnan(few.amplitude).all()
 
 
+@pytest.mark.parametrize("varied", ["mass", "angle"])
+def test_one_parameter_is_a_curve(varied):
+    """A parameter with a single value stays; the least peak is marked."""
+    values = {"mass": [0.1], "angle": [60.0]} | {varied: [0.2, 0.004, 0.1]}
+    found = ss.design_map(
+        lambda mass, angle: pair(
+            mass if varied == "mass" else 0.1, 60.0 * (1.0 + mass * angle / 1e3)
+        ),
+        values,
+        dof="left.x",
+        omega=(95.0, 120.0),
+        max_harmonics=15,
+    )
+    ax = found.plot(length_unit="mm", ax=Figure().add_subplot())
+    curve, star = ax.lines[:2]
+    np.testing.assert_array_equal(curve.get_xdata(), [0.004, 0.1, 0.2])
+    places = [values[varied].index(one) for one in curve.get_xdata()]
+    np.testing.assert_allclose(curve.get_ydata(), 1e3 * found.amplitude.ravel()[places])
+    assert star.get_xdata()[0] == found.optimum[varied]
+    assert ax.get_xlabel() == varied
+    assert ax.get_xscale() == "log"
+    assert ax.get_ylabel() == "peak of left.x [mm]"
+    other = "angle" if varied == "mass" else "mass"
+    assert ax.get_title() == f"{other} = {values[other][0]:g}"
+
+
 @pytest.mark.parametrize(
     ("parameters", "message"),
     [
-        ({"mass": [0.1]}, "give two"),
+        ({"mass": [0.1]}, "give two, .* one value for a parameter that stays"),
         ({"mass": [0.1], "angle": ["x"]}, "angle: 'x' is not a number"),
     ],
 )

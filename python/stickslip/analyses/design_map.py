@@ -53,7 +53,7 @@ def design_map(
     build : callable
         Makes the model of the two values, which it takes by their names.
     parameters : mapping of str to array_like
-        The values of the two parameters.
+        The values of the two parameters. One that has a single value stays: the map is a curve.
     dof : str
         The degree of freedom whose peak is sought.
     omega : (float, float)
@@ -111,7 +111,8 @@ def design_map(
 def _two(parameters: object) -> tuple[tuple[str, str], tuple[NDArray[np.float64], ...]]:
     if not isinstance(parameters, Mapping) or len(parameters) != 2:
         raise ModelError(
-            f'parameters: {brief(parameters)}; give two, {{"mass": [...], "angle": [...]}}'
+            f'parameters: {brief(parameters)}; give two, {{"mass": [...], "angle": [...]}}, one '
+            "value for a parameter that stays"
         )
     first, second = (text(name, "parameters") for name in parameters)
     found = tuple(

@@ -169,7 +169,9 @@ class BackboneOptions(DampingOptions, Swept, total=False):
     """Keywords of `backbone`."""
 
     damping: Annotated[bool, True, "Draw the damping ratio too, below on a new figure."]
-    shapes: Annotated[bool, True, "Show the shape at three amplitudes, of up to 30 degrees of freedom."]
+    shapes: Annotated[
+        bool, True, "Show the shape at three amplitudes, of up to 30 degrees of freedom."
+    ]
 
 
 class MultiplierOptions(Swept, total=False):
