@@ -258,6 +258,23 @@ class TestTangents:
             respond(Wrong(["a"], k=8e3, limit=1e3))
 
 
+    @pytest.mark.parametrize("limit", [1.0, 0.03, 1e-2, 3e-3, 1e-3])
+    def test_right_ones_of_a_law_that_saturates(self, limit):
+        """Differences of a force next to its limit are mostly rounding."""
+
+        class Dahl(Slider):
+            def step(self, before, after, state):
+                du = after - before
+                ahead = np.where(du < 0.0, -self.limit, self.limit)
+                fade = np.exp(-self.k * np.abs(du) / self.limit)
+                force = ahead - (ahead - state) * fade
+                slope = (self.k * (1.0 - force / ahead))[..., None]
+                tangents = ss.Tangents(fade[..., None], -slope, slope, [[1.0]], [[0.0]])
+                return force, force, tangents
+
+        assert respond(Dahl(["a"], k=8e3, limit=limit)).converged.all()
+
+
 class TestErrors:
     def test_of_the_users_code_come_with_their_line(self):
         class Broken(Slider):

@@ -21,6 +21,8 @@ _STEP = 1e-6
 """Step of differences, relative to what is moved: its cube root of rounding, a little less."""
 _DIFFERS = 1e-4
 """Difference of a slope, relative to the largest of its kind, that rounding does not explain."""
+_ROUNDED = 16.0 * float(np.finfo(np.float64).eps)
+"""Rounding of a force or a state, relative to the largest: what saturates has no other slope."""
 _LAST = 1 << 12
 """Calls up to which tangents are compared, at every power of two."""
 
@@ -269,7 +271,7 @@ class ContactLaw(Contact):
             if derive:
                 self._calls += 1
                 if self._calls & (self._calls - 1) == 0 and self._calls <= _LAST:
-                    self._compare(before, after, state, tangents)
+                    self._compare(before, after, state, (force, new, tangents))
         except Exception as error:  # Whatever the user's own code raises.
             self._raised = error
             return None
@@ -322,9 +324,14 @@ class ContactLaw(Contact):
     # ------------------------------------------------------------- tangents against differences
 
     def _compare(
-        self, before: Matrix, after: Matrix, state: Matrix, tangents: list[Matrix]
+        self,
+        before: Matrix,
+        after: Matrix,
+        state: Matrix,
+        answer: tuple[Matrix, Matrix, list[Matrix]],
     ) -> None:
         """Refuse tangents that are no derivative of the step."""
+        force, new, tangents = answer
         by_state, by_before, by_after, force_by_state, force_by_after = tangents
         wholes = {
             "state": (state, force_by_state @ by_state, by_state),
@@ -338,10 +345,12 @@ class ContactLaw(Contact):
             size = size or moved * np.abs(self._stuck()[1]).max(initial=0.0)
             if not size:
                 continue
-            for column, sides in self._sides(given, cause, own, _STEP * size):
+            step = _STEP * size
+            noise = [_ROUNDED * np.abs(one).max(initial=0.0) / step for one in (force, new)]
+            for column, sides in self._sides(given, cause, own, step):
                 for what, place, slope in (("force", 0, force_slope), ("state", 1, state_slope)):
                     found = [side[place] for side in sides]
-                    self._require(what, cause, column, slope, found)
+                    self._require(what, cause, column, slope, found, noise[place])
 
     def _sides(
         self, given: dict[str, Matrix], cause: str, own: Matrix, step: float
@@ -358,13 +367,19 @@ class ContactLaw(Contact):
             yield column, sides
 
     def _require(
-        self, what: str, cause: str, column: int, tangent: Matrix, sides: list[Matrix]
+        self,
+        what: str,
+        cause: str,
+        column: int,
+        tangent: Matrix,
+        sides: list[Matrix],
+        noise: float,
     ) -> None:
         slope = tangent[:, :, column]
         low, high = np.minimum(*sides), np.maximum(*sides)
         scale = max(np.abs(tangent).max(initial=0.0), np.abs(low).max(), np.abs(high).max())
         # At a corner every slope between those of both sides is one.
-        wrong = np.maximum(low - slope, slope - high) > _DIFFERS * scale
+        wrong = np.maximum(low - slope, slope - high) > _DIFFERS * scale + noise
         if wrong.any():
             node, row = np.argwhere(wrong)[0]
             raise ModelError(
