@@ -257,7 +257,6 @@ class TestTangents:
         with pytest.raises(ss.ModelError, match=r"force\[0\] by state\[0\] of node 0 is 1, differ"):
             respond(Wrong(["a"], k=8e3, limit=1e3))
 
-
     @pytest.mark.parametrize("limit", [1.0, 0.03, 1e-2, 3e-3, 1e-3])
     def test_right_ones_of_a_law_that_saturates(self, limit):
         """Differences of a force next to its limit are mostly rounding."""

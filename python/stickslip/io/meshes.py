@@ -58,8 +58,8 @@ def read_mesh(
     metres = 1.0 if units is None else MatrixUnits.of(units).length
     if file.suffix.lower() == ".inp":
         deck = read_deck(file)
-        own = deck.numbers if numbers is None else numbers
-        return Mesh(metres * deck.nodes, deck.cells, own, deck.node_sets, deck.surfaces)
+        known = deck.numbers if numbers is None else numbers
+        return Mesh(metres * deck.nodes, deck.cells, known, deck.node_sets, deck.surfaces)
     with readable(file, "mesh"):
         meshio = optional_package("meshio", f"{file}: meshes")
         # It names the line of what is wrong, and meshio does not.

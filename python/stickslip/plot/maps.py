@@ -47,7 +47,7 @@ def _curve(ax: Axes, result: DesignMap, factor: float, label: str) -> None:
     ax.plot(values[order], heights[order], "o-", ms=3.0, color=colour, label=label)
     if np.isfinite(heights).any():
         best = int(np.nanargmin(heights))
-        looks = {"color": style.ORANGE, "ms": 12, "mec": "white", "ls": "none"}
+        looks: style.Looks = {"color": style.ORANGE, "ms": 12, "mec": "white", "ls": "none"}
         ax.plot(values[best], heights[best], "*", **looks, label=f"least, {values[best]:.4g}")
     if values.min() > 0.0 and values.max() >= _DECADES * values.min():
         ax.set_xscale("log")
