@@ -76,6 +76,9 @@ def test_measured_frequencies_make_the_mistuning():
     both = TUNED.replace(DISK, DISK + "mistuning = { deviation = 0.1, frequency = [0.1] }\n")
     with pytest.raises(ss.ModelError, match="or 'frequency', those of blade frequencies"):
         Study.parse(both)
+    far = TUNED.replace(DISK, DISK + "mistuning = { frequency = [0, 0, 2, 0, 0, 0] }\n")
+    with pytest.raises(ss.ModelError, match=r"disk: mistuning.frequency\[2\] is 2; give"):
+        assert Study.parse(far).model
 
 
 def test_interface_blocks_and_boundaries():

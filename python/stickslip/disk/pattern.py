@@ -70,15 +70,20 @@ def frequency_pattern(deviations: ArrayLike) -> NDArray[np.float64]:
     ModelError
         If a deviation is not finite, or not between -1 and 1.
     """
+    return stiffness_of(deviations, "deviations")
+
+
+def stiffness_of(deviations: ArrayLike, entry: str) -> NDArray[np.float64]:
+    """Return the deviations of the stiffness that belong to those of frequencies."""
     try:
         relative = np.asarray(deviations, dtype=np.float64)
     except (TypeError, ValueError):
-        raise ModelError(f"deviations: {brief(deviations)} holds no real numbers") from None
+        raise ModelError(f"{entry}: {brief(deviations)} holds no real numbers") from None
     wrong = np.argwhere(~(np.abs(relative) < 1.0))
     if wrong.size:
         place = "".join(f"[{one}]" for one in wrong[0])
         raise ModelError(
-            f"deviations{place} is {relative[tuple(wrong[0])]:g}; give (f - f0) / f0, 0.02 for 2 %"
+            f"{entry}{place} is {relative[tuple(wrong[0])]:g}; give (f - f0) / f0, 0.02 for 2 %"
         )
     return relative * (2.0 + relative)
 

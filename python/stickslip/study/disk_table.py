@@ -12,7 +12,7 @@ from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from stickslip.checks import brief
 from stickslip.disk import Coupling
-from stickslip.disk.pattern import frequency_pattern, mistuning_pattern
+from stickslip.disk.pattern import mistuning_pattern, stiffness_of
 from stickslip.errors import EntryError
 from stickslip.settings.entries import (
     ONE_OF,
@@ -98,7 +98,7 @@ class MistuningTable(Table):
     def values(self, sectors: int) -> NDArray[np.float64]:
         """Return the deviations of all sectors."""
         if self.frequency is not None:
-            return frequency_pattern(self.frequency)
+            return stiffness_of(self.frequency, "mistuning.frequency")
         if self.deviation is None:
             return np.array(self.pattern, dtype=np.float64)
         return mistuning_pattern(sectors, self.deviation, self.distribution, seed=self.seed)
