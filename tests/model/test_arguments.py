@@ -125,6 +125,7 @@ CALLED = {
     ss.join: {"structures": {"1": SEAT}},
     ss.engine_order_forces: {"dof": "*.x", "amplitude": 1.0, "engine_order": 1, "dofs": ["0.x"]},
     ss.mistuning_pattern: {"sectors": 5, "deviation": 0.1},
+    ss.frequency_pattern: {"deviations": [0.01, -0.02]},
     ss.modal_damping: {"ratio": 0.01},
     ss.craig_bampton: {"mass": np.eye(6), "stiffness": LINE, "boundary": [0], "modes": 2},
     ss.cyclic_sector: {"structure": SEAT, "boundary": {"x": "y"}},
