@@ -72,6 +72,8 @@ pub(super) struct Found {
     pub(super) tops: Vec<Result<Top, Doubt>>,
     /// Whether laws that are not monotone leave neighbours on different branches.
     pub(super) torn: bool,
+    /// Whether there is a highest point of every group but those that nothing bounds, on whatever branch.
+    pub(super) settled: bool,
 }
 
 /// A search under way.
@@ -130,7 +132,7 @@ impl<'a, 'b> Search<'a, 'b> {
         let unbounded = |at: &Option<f64>| at.map(Doubt::unbounded);
         if look.unbounded.iter().all(Option::is_some) {
             let tops = look.unbounded.iter().filter_map(unbounded).map(Err).collect();
-            return Ok(Some(Found { samples: Vec::new(), tops, torn: false }));
+            return Ok(Some(Found { samples: Vec::new(), tops, torn: false, settled: true }));
         }
         for &omega in &look.omega {
             self.look(omega, seeds)?;
@@ -168,11 +170,13 @@ impl<'a, 'b> Search<'a, 'b> {
         if self.is_interrupted() {
             return Ok(None);
         }
+        let mut known = doubts.iter().zip(&look.unbounded);
+        let settled = known.all(|(doubt, at)| doubt.is_none() || at.is_some());
         let top = |group| self.envelope.top(group).map(|(sample, curve)| Top { sample, curve });
         let tops: Option<Vec<Top>> = (0..doubts.len()).map(top).collect();
         Ok(tops.map(|tops| {
             let tops = tops.into_iter().zip(doubts).map(|(top, doubt)| doubt.map_or(Ok(top), Err));
-            Found { tops: tops.collect(), samples: self.envelope.samples, torn }
+            Found { tops: tops.collect(), samples: self.envelope.samples, torn, settled }
         }))
     }
 
