@@ -95,19 +95,21 @@ pub fn optimal_damper<'py>(
 /// A problem of a map, with its settings and the DOF whose peak is sought.
 type CellOf<'py> = (PyRef<'py, Problem>, Bound<'py, PyAny>, usize);
 
-/// Amplitude, frequency, harmonics and status of the peaks of all problems of a map.
+/// Amplitude, frequency, harmonics and status of the peaks of all problems of a map, as far as Ctrl-C lets it.
 #[pyfunction]
 pub fn peak_map(
     py: Python<'_>,
     cells: Vec<CellOf<'_>>,
     grid: Vec<f64>,
     threads: usize,
+    progress: Option<Py<PyAny>>,
 ) -> PyResult<Vec<(f64, f64, usize, u8)>> {
     let cell = |(problem, settings, dof): CellOf<'_>| {
         Ok((Arc::clone(&problem.model), harmonic(&settings)?, dof))
     };
     let cells: Vec<Cell> = cells.into_iter().map(cell).collect::<PyResult<_>>()?;
-    let peaks = watch::whole(py, move |look| design::peak_map(&cells, &grid, threads, look))?;
+    let map = move |look: &dyn Fn(f64) -> bool| design::peak_map(&cells, &grid, threads, look);
+    let peaks = watch::computed(py, progress, map)?;
     let told = |peak: &CellPeak| (peak.amplitude, peak.omega, peak.harmonics, peak.status as u8);
     Ok(peaks.iter().map(told).collect())
 }

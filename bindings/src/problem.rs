@@ -171,6 +171,17 @@ impl Problem {
         Ok(PyArray1::from_vec(py, found))
     }
 
+    /// The lowest frequency of a range at which nothing bounds one of some DOFs, if there is one [rad/s].
+    fn unbounded(
+        &self,
+        py: Python<'_>,
+        dofs: Vec<usize>,
+        span: (f64, f64),
+    ) -> PyResult<Option<f64>> {
+        let model = Arc::clone(&self.model);
+        whole(py, move |_| model.unbounded(span, &dofs))
+    }
+
     /// Names of the contact laws that are no monotone operators of the motion.
     #[getter]
     fn laws_not_monotone(&self) -> Vec<&'static str> {

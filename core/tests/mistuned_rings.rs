@@ -120,7 +120,8 @@ fn slopes_of_all_blades_match_differences() {
     let table = SampleTable::new(unknowns.harmonics().clone());
     let mut linearised =
         Linearised::new(&model, &table, Residual::Centred, omega, unknowns).unwrap();
-    let (jets, rate) = linearised.frequency_jets(&dofs, Measure::HalfRange).unwrap().unwrap();
+    let jets = linearised.frequency_jets(&dofs, Measure::HalfRange).unwrap().unwrap();
+    let (jets, rate) = (jets.amplitudes, jets.rate);
     let ends = swept(&model, &[omega - step, omega, omega + step], &dofs);
     for (dof, (height, slope)) in jets.iter().enumerate() {
         let difference = (ends[2][dof] - ends[0][dof]) / (2.0 * step);

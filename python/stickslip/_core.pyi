@@ -62,6 +62,7 @@ class Problem:
     def natural_frequencies(
         self, slipping: Sequence[tuple[int, int]], diameter: int | None = None
     ) -> Float: ...
+    def unbounded(self, dofs: Sequence[int], span: tuple[float, float]) -> float | None: ...
     @property
     def laws_not_monotone(self) -> list[str]: ...
     @property
@@ -232,7 +233,10 @@ def damper_curve(
     bounds: bool | None = None,
 ) -> Peaks: ...
 def peak_map(
-    cells: Sequence[tuple[Problem, HarmonicSettings, int]], grid: Float, threads: int
+    cells: Sequence[tuple[Problem, HarmonicSettings, int]],
+    grid: Float,
+    threads: int,
+    progress: Progress,
 ) -> list[tuple[float, float, int, int]]: ...
 def optimal_damper(
     problem: Problem,

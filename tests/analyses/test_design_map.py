@@ -179,3 +179,45 @@ def test_engine_orders_over_the_speed_of_the_rotor():
     assert above.get_xlabel() == "frequency [Hz]"
     with pytest.raises(ss.ModelError, match="it has the engine orders 2, 3, not 5"):
         ss.speed_response(at, speeds, engine_order=5, dof="x").plot(diagram=diagram)
+
+
+def damped(limit, stiffness):
+    blade = ss.Structure([[1.0]], [[1e4]], damping=ss.ModalDamping(1e-4), dofs=["x"])
+    contact = ss.Jenkins("x", stiffness=stiffness, slip_force=limit)
+    return ss.Model(blade, [contact], [ss.Force("x", 1.0)])
+
+
+def test_a_resonance_between_the_points_of_the_coarse_grid_is_found():
+    values = {"limit": [0.1, 5.0], "stiffness": [1e2, 3e3]}
+    found = ss.design_map(damped, values, dof="x", omega=(60.0, 140.0), points=5)
+    for row, limit in enumerate(values["limit"]):
+        for column, stiffness in enumerate(values["stiffness"]):
+            curve = ss.damper_curve(
+                damped(limit, stiffness), dof="x", slip_force=[limit], omega=(60.0, 140.0)
+            )
+            assert found.amplitude[row, column] == pytest.approx(curve.amplitude[0], rel=1e-2)
+
+
+def test_ctrl_c_keeps_the_cells_that_are_done():
+    shares = []
+
+    def press(share):
+        shares.append(share)
+        if share > 0.2:
+            raise KeyboardInterrupt
+
+    values = {"limit": np.geomspace(0.1, 5.0, 40), "stiffness": np.geomspace(1e2, 1e4, 40)}
+    span = {"dof": "x", "omega": (60.0, 140.0), "threads": 1}
+    with pytest.raises(ss.Interrupted, match=r"design map interrupted after \d+ of 1600") as caught:
+        ss.design_map(damped, values, **span, progress=press)
+    kept = caught.value.result
+    assert kept.interrupted
+    done = kept.codes != ss.Status.NOT_COMPUTED.code
+    assert 0.2 * 1600 < done.sum() < 1600
+    assert np.isfinite(kept.amplitude[done]).all()
+    assert np.isnan(kept.amplitude[~done]).all()
+    first = {name: one[:1] for name, one in values.items()}
+    whole = ss.design_map(damped, first, **span, progress=shares.append)
+    assert whole.amplitude[0, 0] == kept.amplitude[0, 0]
+    assert not whole.interrupted
+    assert shares[-1] == 1.0

@@ -242,6 +242,12 @@ impl<'a> ForcedBalance<'a> {
         Ok(equations.is_linear())
     }
 
+    /// Harmonics that loads act at, ascending, but for a static one.
+    pub(crate) fn loaded_harmonics(&self) -> Vec<usize> {
+        let forced = self.model.compliance().forced_harmonics();
+        forced.into_iter().filter(|&order| order > 0).collect()
+    }
+
     /// Whether all laws are monotone.
     pub(crate) fn is_monotone(&self) -> bool {
         self.model.is_monotone()

@@ -38,6 +38,25 @@ pub enum Cause {
     },
 }
 
+/// What some DOFs do at a solution, with derivatives in frequency.
+pub struct FrequencyJets {
+    /// Amplitudes, each with its derivative.
+    pub amplitudes: Vec<(f64, f64)>,
+    /// Series of the displacements, one after the other, …
+    pub series: Vec<f64>,
+    /// … and their derivatives.
+    pub slopes: Vec<f64>,
+    /// Derivative of the contact displacements.
+    pub rate: Vec<f64>,
+}
+
+impl FrequencyJets {
+    /// The series of every DOF, of so many coefficients, with its derivative.
+    pub fn motions(&self, slots: usize) -> impl Iterator<Item = (&[f64], &[f64])> {
+        self.series.chunks_exact(slots).zip(self.slopes.chunks_exact(slots))
+    }
+}
+
 /// The balance at a solution, with its Jacobian.
 pub struct Linearised<'a> {
     equations: Condensed<'a>,
@@ -171,28 +190,27 @@ impl<'a> Linearised<'a> {
         Ok((amplitude(self.equations.table, &series, measure), slopes))
     }
 
-    /// Amplitudes of some DOFs, each with its derivative in frequency, and the derivative of the
-    /// contact displacements; `None` where the Jacobian is singular.
+    /// What some DOFs do, with derivatives in frequency; `None` where the Jacobian is singular.
     ///
     /// # Errors
     /// As [`Linearised::new`].
-    #[allow(clippy::type_complexity)]
     pub fn frequency_jets(
         &mut self,
         dofs: &[usize],
         measure: Measure,
-    ) -> Result<Option<(Vec<(f64, f64)>, Vec<f64>)>, Error> {
+    ) -> Result<Option<FrequencyJets>, Error> {
         let Some(rate) = self.contact_rate(Cause::Frequency) else { return Ok(None) };
         let slots = self.equations.harmonics().slots();
         let series = self.displacement(dofs)?;
         let slopes = self.displacement_rate(dofs, Cause::Frequency, &rate)?;
-        let both = series.chunks_exact(slots).zip(slopes.chunks_exact(slots));
-        let amplitudes = both.map(|(series, slopes)| {
+        let mut jets = FrequencyJets { amplitudes: Vec::new(), series, slopes, rate };
+        let amplitudes = jets.motions(slots).map(|(series, slopes)| {
             let table = self.equations.table;
             let gradient = amplitude_gradient(table, series, measure);
             let slope = gradient.iter().zip(slopes).map(|(g, s)| g * s).sum();
             (amplitude(table, series, measure), slope)
         });
-        Ok(Some((amplitudes.collect(), rate)))
+        jets.amplitudes = amplitudes.collect();
+        Ok(Some(jets))
     }
 }

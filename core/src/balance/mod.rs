@@ -47,7 +47,7 @@ pub use forced::ForcedBalance;
 pub(crate) use forced::WarmStart;
 pub use history::with_history;
 pub(crate) use limit_load::{is_carried_away, is_let_go};
-pub use linearised::{Cause, Linearised};
+pub use linearised::{Cause, FrequencyJets, Linearised};
 pub(crate) use peak::brent;
 pub use peak::refine_peak;
 pub(crate) use price::work_of_given;

@@ -200,10 +200,14 @@ impl<'a> Loading<'a> {
 
     /// Whether the load that a level adds moves a structure that floats as if nothing held it.
     fn goes_far(&self, level: &Level) -> bool {
-        let free = self.model.compliance().free_frequencies();
-        let floats = matches!(free, [slow, .., fast] if slow * slow * FREE <= fast * fast);
         let moved: Vec<f64> = level.u.iter().zip(&self.level.u).map(|(a, b)| a - b).collect();
-        floats && norm(&moved) > FREE * (level.share - self.level.share) * norm(&self.stuck)
+        let share = level.share - self.level.share;
+        // All frequencies of a large structure take long: they are asked for last.
+        let floats = || {
+            let free = self.model.compliance().free_frequencies();
+            matches!(free, [slow, .., fast] if slow * slow * FREE <= fast * fast)
+        };
+        norm(&moved) > FREE * share * norm(&self.stuck) && floats()
     }
 
     /// The level at a share of the load by two steps, and how far it is from that by one.

@@ -131,6 +131,10 @@ impl ContactLaw for BoucWen {
         vec![if self.stiffness == 0.0 { 0.0 } else { self.slip_force }]
     }
 
+    fn grows(&self) -> Vec<bool> {
+        vec![false; self.displacements()]
+    }
+
     /// It slips from the first on: a force at twice of which that is little.
     fn onsets(&self) -> Vec<f64> {
         let little = 0.5 * LITTLE.powf(1.0 / self.exponent);

@@ -75,6 +75,8 @@ impl ContactLaw for Described {
         is_odd() -> bool;
         is_monotone() -> bool;
         limits() -> Vec<f64>;
+        planes() -> Vec<[usize; 2]>;
+        grows() -> Vec<bool>;
         return_map(before: &[f64], after: &[f64], state: &mut [f64], force: &mut [f64],
             jacobian: Option<&mut ReturnMapJacobian>);
         with_scaled_stiffness(share: f64) -> Box<dyn ContactLaw>;

@@ -115,6 +115,17 @@ pub trait ContactLaw: Send + Sync + std::fmt::Debug {
     /// never slips.
     fn limits(&self) -> Vec<f64>;
 
+    /// Pairs of components whose forces are one traction: its length has the limit that both have.
+    fn planes(&self) -> Vec<[usize; 2]> {
+        Vec::new()
+    }
+
+    /// Whether a growing displacement of a component may take forces of the law beyond their limits, or off the
+    /// stuck spring where they have none. A law that does not say so may be anything.
+    fn grows(&self) -> Vec<bool> {
+        vec![true; self.displacements()]
+    }
+
     /// Force of every component at which slip begins \[N\].
     fn onsets(&self) -> Vec<f64> {
         self.limits()

@@ -1,10 +1,13 @@
 //! Peaks of a map over two parameters of a design, each to some accuracy.
 //!
-//! Resonances are located on an even grid with few harmonics. The highest ones are then solved on ever
-//! narrower grids with twice the harmonics each, until the peak stays the same; every point starts from
-//! the nearest one that is known, of fewer harmonics too. This follows one branch: jumps are not looked
-//! for, as in the search for a single peak.
+//! Where all laws are monotone the peak is that of the search for a single one. Where a contact opens that search
+//! follows the whole curve by arclength with all the harmonics of its peak, a hundred of a bouncing damper, which
+//! a map of many cells cannot pay for. There resonances are located on an even grid with few harmonics. The
+//! highest ones are then solved on ever narrower grids with twice the harmonics each, until the peak stays the
+//! same; every point starts from the nearest one that is known, of fewer harmonics too. This follows one branch:
+//! jumps are not looked for.
 
+use super::peak::{climbed, PeakQuery, OF_STUDY};
 use crate::balance::{
     sweep, ForcedBalance, HarmonicChoice, Point, PointStatus, Progress, Settings,
 };
@@ -107,6 +110,36 @@ struct Search<'a> {
 
 impl Search<'_> {
     fn peak(&self) -> Result<CellPeak, Error> {
+        let (model, _, dof) = self.cell;
+        let span = (self.grid[0], self.grid[self.grid.len() - 1]);
+        if model.unbounded(span, &[*dof])?.is_some() {
+            return Ok(CellPeak::missing(0, PointStatus::Singular));
+        }
+        let found = if model.is_monotone() { self.climbed(span) } else { self.located() };
+        // Of a search that was stopped what is found need not be the highest.
+        if (self.progress)(0.0) {
+            found
+        } else {
+            Ok(CellPeak::missing(0, PointStatus::NotComputed))
+        }
+    }
+
+    /// The peak by the search for a single one.
+    fn climbed(&self, span: (f64, f64)) -> Result<CellPeak, Error> {
+        let (model, settings, dof) = self.cell;
+        let quest = PeakQuery { groups: vec![vec![*dof]], measure: Measure::HalfRange, span };
+        let found = climbed(model, *settings, &quest, OF_STUDY, None, self.progress)?;
+        let missing = CellPeak::missing(0, PointStatus::NotComputed);
+        Ok(found.summits.first().map_or(missing, |peak| CellPeak {
+            omega: if peak.status.is_solved() { peak.omega } else { f64::NAN },
+            amplitude: peak.amplitude,
+            harmonics: peak.harmonics,
+            status: peak.status,
+        }))
+    }
+
+    /// The highest peak by the even grid.
+    fn located(&self) -> Result<CellPeak, Error> {
         let coarse = sweep(self.balance(COARSE)?, self.grid)?.points;
         let highest = coarse.iter().map(|point| height(point)).fold(0.0, f64::max);
         self.highest(&coarse, NEAR * highest)

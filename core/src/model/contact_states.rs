@@ -21,6 +21,8 @@ pub(super) struct State {
     /// Effect of a unit force at every contact point on every pole, none of points that stick, and
     /// what the point shows of it.
     pub(super) contacts: Vec<Vec<[f64; 2]>>,
+    /// What of a slip limit a traction in each plane does to every pole, over what a force along a line does.
+    pub(super) planes: Vec<Vec<f64>>,
     /// Which points slip.
     pub(super) slips: Vec<bool>,
     /// Share of the stiffness that these carry all the same: they slip in a part of the period.

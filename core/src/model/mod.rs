@@ -7,6 +7,7 @@ mod flutter_model;
 mod modal_basis;
 mod resonances;
 mod slipping;
+mod unbounded;
 mod variation;
 
 pub use flutter_model::{FlutterModel, NegativeDamping};

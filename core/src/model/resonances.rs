@@ -7,18 +7,17 @@
 
 use super::body::Body;
 use super::contact_states::{partial_sets, slip_sets, State};
+use super::unbounded::most_of_a_traction;
 use super::Model;
 use crate::structure::Poles;
 use crate::Error;
 use faer::{c64, Mat};
 use std::f64::consts::PI;
 
-/// Decay, over the highest natural frequency, that is rounding of none.
-const UNDAMPED: f64 = 1e-14;
 /// Bisections of an amplitude over up to twelve decades.
 const BISECTIONS: usize = 30;
 /// Share of a product of shapes that is rounding of none.
-const NOISE: f64 = 1e-9;
+pub(super) const NOISE: f64 = 1e-9;
 
 /// A resonance in one state of the contacts.
 #[derive(Debug, Clone)]
@@ -58,6 +57,7 @@ impl Model {
         let forced = self.compliance.forced_harmonics();
         let lowest = forced.iter().copied().find(|&k| k > 0).unwrap_or(1);
         let limits: Vec<f64> = self.slip_limits().collect();
+        let planes: Vec<[usize; 2]> = self.planes().collect();
         let stiffness = self.contact_stiffness();
         let stiffness: Vec<f64> = (0..limits.len()).map(|i| stiffness[(i, i)]).collect();
         let inside = |omega: f64| (low..=high).contains(&omega);
@@ -85,16 +85,16 @@ impl Model {
             };
             let load = self.load(harmonic);
             // A slipping contact bears a square wave at most.
-            let share = 4.0 / PI * (lowest as f64 / order).min(1.0);
-            let bearing = Bearing { load: &load, limits: &limits, stiffness: &stiffness, share };
+            let share = square_wave(lowest, harmonic);
+            let (limits, stiffness, planes) = (&limits, &stiffness, &planes);
+            let bearing = Bearing { load: &load, limits, stiffness, planes, share };
             // A load of its own moves a resonance as `shift` says.
             for state in states.iter().filter(|state| state.carried == 0.0 || !is_forced) {
-                let highest = state.poles.values.iter().map(|s| s.norm()).fold(0.0, f64::max);
                 for (j, pole) in state.poles.values.iter().enumerate() {
                     let driven = bearing.driven(state, j);
                     let decay = pole.re.abs() + bearing.lost(state, j, order);
-                    let damped = decay > UNDAMPED * highest;
                     let reach = bearing.reach_beyond(states, state, j, decay);
+                    let unbounded = state.all && self.nothing_bounds(&bearing, state, j, decay);
                     let moved = shift(driven, decay, &|| bearing.points(state, j));
                     for omega in [Some(pole.im), moved.map(|by| pole.im + by)] {
                         let Some(omega) = omega.map(|w| w / order).filter(|&w| inside(w)) else {
@@ -104,7 +104,7 @@ impl Model {
                             omega,
                             bandwidth: 2.0 * decay / order,
                             reach: Some(reach.clone()),
-                            unbounded: !damped && state.all && driven > bearing.friction(state, j),
+                            unbounded,
                             forced: is_forced,
                             partial: state.carried > 0.0,
                         });
@@ -117,7 +117,7 @@ impl Model {
     }
 
     /// The load of a harmonic on every DOF.
-    fn load(&self, harmonic: usize) -> Vec<c64> {
+    pub(super) fn load(&self, harmonic: usize) -> Vec<c64> {
         let loads = self.ports.loads.iter().filter(|load| load.harmonic == harmonic);
         let mut sum = vec![c64::new(0.0, 0.0); self.structure.dofs()];
         for load in loads {
@@ -126,12 +126,17 @@ impl Model {
         sum
     }
 
-    /// The states that a harmonic sees, if they are known.
-    fn states_at(&self, harmonic: usize) -> Result<Option<&[State]>, Error> {
-        let diameter = match &self.body {
+    /// The nodal diameter that a harmonic sees.
+    pub(super) fn diameter(&self, harmonic: usize) -> usize {
+        match &self.body {
             Body::Wave { cyclic, .. } => cyclic.diameter(harmonic),
             Body::Whole | Body::Ring(_) => 0,
-        };
+        }
+    }
+
+    /// The states that a harmonic sees, if they are known.
+    fn states_at(&self, harmonic: usize) -> Result<Option<&[State]>, Error> {
+        let diameter = self.diameter(harmonic);
         let Some(states) = self.states.diameters.get(diameter) else { return Ok(None) };
         match states.get_or_init(|| self.find_states(diameter)) {
             Ok(states) => Ok(Some(states)),
@@ -139,7 +144,7 @@ impl Model {
         }
     }
 
-    fn slip_limits(&self) -> impl Iterator<Item = f64> + '_ {
+    pub(super) fn slip_limits(&self) -> impl Iterator<Item = f64> + '_ {
         self.laws.iter().flat_map(|law| law.limits())
     }
 
@@ -150,7 +155,12 @@ impl Model {
         sets.map(|(slips, carried)| self.state(diameter, &slips, carried)).collect()
     }
 
-    fn state(&self, diameter: usize, slips: &[bool], carried: f64) -> Result<State, Error> {
+    pub(super) fn state(
+        &self,
+        diameter: usize,
+        slips: &[bool],
+        carried: f64,
+    ) -> Result<State, Error> {
         let structure = &self.structure;
         // What carries all of its stiffness sticks.
         let all_stick: Vec<bool> = self.slip_limits().map(|limit| limit == 0.0).collect();
@@ -196,39 +206,67 @@ impl Model {
         let contacts = (0..poles.values.len())
             .map(|j| (0..rows.nrows()).map(|i| effect(j, i)).collect())
             .collect();
+        let planes: Vec<[usize; 2]> = self.planes().collect();
+        let of_plane = |j: usize, [a, b]: [usize; 2]| {
+            if slips[a] {
+                most_of_a_traction([effects[(j, a)], effects[(j, b)]])
+            } else {
+                0.0
+            }
+        };
+        let in_planes = (0..poles.values.len())
+            .map(|j| planes.iter().map(|plane| of_plane(j, *plane)).collect())
+            .collect();
         let mut limits = self.slip_limits().zip(slips);
         let all = carried == 0.0 && limits.all(|(limit, slips)| *slips || limit.is_infinite());
-        Ok(State { poles, contacts, slips: slips.to_vec(), carried, all })
+        Ok(State { poles, contacts, planes: in_planes, slips: slips.to_vec(), carried, all })
     }
 }
 
+/// Effect of a load on a pole.
+pub(super) fn driven(state: &State, j: usize, load: &[c64]) -> f64 {
+    let left = state.poles.left.row(j);
+    let size = load.iter().map(|p| p.norm_sqr()).sum::<f64>().sqrt();
+    let driven = (0..load.len()).map(|i| left[i] * load[i]).sum::<c64>().norm();
+    if driven > NOISE * left.norm_l2() * size {
+        driven
+    } else {
+        0.0
+    }
+}
+
+/// Most of a slip limit that the force of a point has in a harmonic, if `lowest` is the lowest one.
+pub(super) fn square_wave(lowest: usize, harmonic: usize) -> f64 {
+    4.0 / PI * (lowest as f64 / harmonic as f64).min(1.0)
+}
+
 /// What drives and what slows a resonance at one harmonic.
-struct Bearing<'a> {
-    load: &'a [c64],
-    limits: &'a [f64],
-    stiffness: &'a [f64],
+pub(super) struct Bearing<'a> {
+    pub(super) load: &'a [c64],
+    pub(super) limits: &'a [f64],
+    pub(super) stiffness: &'a [f64],
+    /// Pairs of points that slip in a plane.
+    pub(super) planes: &'a [[usize; 2]],
     /// Most of a slip limit that a friction force has in this harmonic.
-    share: f64,
+    pub(super) share: f64,
 }
 
 impl Bearing<'_> {
     /// Effect of the load on a pole.
-    fn driven(&self, state: &State, j: usize) -> f64 {
-        let left = state.poles.left.row(j);
-        let size = self.load.iter().map(|p| p.norm_sqr()).sum::<f64>().sqrt();
-        let driven = (0..self.load.len()).map(|i| left[i] * self.load[i]).sum::<c64>().norm();
-        if driven > NOISE * left.norm_l2() * size {
-            driven
-        } else {
-            0.0
-        }
+    pub(super) fn driven(&self, state: &State, j: usize) -> f64 {
+        driven(state, j, self.load)
     }
 
     /// Most that the friction of all slipping points does to a pole.
-    fn friction(&self, state: &State, j: usize) -> f64 {
-        let points = state.contacts[j].iter().zip(self.limits);
-        let slipping = points.filter(|([effect, _], _)| *effect > 0.0);
-        slipping.map(|([effect, _], limit)| self.share * effect * limit).sum()
+    pub(super) fn friction(&self, state: &State, j: usize) -> f64 {
+        let points = state.contacts[j].iter().zip(self.limits).enumerate();
+        let lines = points.filter(|(i, ([effect, _], _))| {
+            *effect > 0.0 && !self.planes.iter().any(|plane| plane.contains(i))
+        });
+        let lines = lines.map(|(_, ([effect, _], limit))| effect * limit);
+        let planes = self.planes.iter().zip(&state.planes[j]).filter(|(_, effect)| **effect > 0.0);
+        let planes = planes.map(|(plane, effect)| effect * self.limits[plane[0]]);
+        self.share * (lines.sum::<f64>() + planes.sum::<f64>())
     }
 
     /// Decay of a pole by the points that slip in a part of the period: a motion at a higher harmonic

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip import _core
-from stickslip.analyses.run import refusals
+from stickslip.analyses.run import Progress, Run, refusals
 from stickslip.checks import (
     brief,
     members,
@@ -21,8 +21,10 @@ from stickslip.checks import (
     whole_number,
 )
 from stickslip.errors import ModelError
+from stickslip.interruption import stopped
 from stickslip.model import Model, Structure
 from stickslip.results.design_map import DesignMap
+from stickslip.results.status import Status
 from stickslip.settings.peaks import PeakSettings
 from stickslip.units import physical_number
 
@@ -40,13 +42,16 @@ def design_map(
     tolerance: float = 1e-2,
     max_harmonics: int = 127,
     threads: int | None = None,
+    progress: Progress = None,
 ) -> DesignMap:
     """Find the peak of a response for all pairs of values of two parameters of a design.
 
-    Resonances of a model are located on a coarse grid with seven harmonics; the highest ones are
-    then solved on ever narrower grids with twice the harmonics each, until the peak stays the same
-    within a quarter of the tolerance, and its error estimate is below half of it. Unlike with
-    `damper_curve` whatever `build` makes may vary: mass, angle, speed, geometry.
+    Unlike with `damper_curve` whatever `build` makes may vary: mass, angle, speed, geometry. Where
+    the motion of a model is unique its peak is found as that of a damper curve. Where contacts open
+    or laws are not monotone for other reasons, resonances are located on a coarse grid with seven
+    harmonics; the highest ones are then solved on ever narrower grids with twice the harmonics
+    each, until the peak stays the same within a quarter of the tolerance, and its error estimate is
+    below half of it: jumps between motions are not looked for.
 
     Parameters
     ----------
@@ -59,23 +64,29 @@ def design_map(
     omega : (float, float)
         Range of frequencies in which the peak is the highest point [rad/s].
     points : int, optional
-        Frequencies of the coarse grid. A resonance much narrower than their distance may be missed.
+        Frequencies of the coarse grid, where there is one. A resonance much narrower than their
+        distance may be missed then.
     tolerance : float, optional
         Accuracy of the peaks, relative to them.
     max_harmonics : int, optional
         Harmonics at which a peak is given up: it counts as not found.
     threads : int, optional
         Threads. Default: as many as there are processors.
+    progress : callable, optional
+        Called with the share of the cells that are done, 0 to 1.
 
     Returns
     -------
     DesignMap
-        Amplitude and frequency of every peak; nan where none was found, and `status` says why.
+        Amplitude and frequency of every peak; nan where none was found, and `status` says why:
+        "singular" where neither damping nor friction bounds the response.
 
     Raises
     ------
     ModelError
         If there are not two parameters with values, or a value makes no model.
+    Interrupted
+        At Ctrl-C, with the cells that are done in `result`.
     """
     names, values = _two(parameters)
     _require_callable(build, names)
@@ -98,14 +109,18 @@ def design_map(
     problems = [
         (model.problem, settings.suited(model), model.structure.index(dof)) for model in models
     ]
-    with refusals(models[0]):
-        found = np.array(_core.peak_map(problems, span, threads or cpu_count() or 1))
-    shape = tuple(map(len, values))
-    columns = [column.reshape(shape) for column in found.T]
-    harmonics, status = (column.astype(np.int64) for column in columns[2:])
-    own = DesignMap(names, values, dof, columns[0], columns[1], harmonics, status)
-    set_fields(own, **vars(own))
-    return own
+    with Run("design map", progress) as run:
+        with refusals(models[0]):
+            found = np.array(_core.peak_map(problems, span, threads or cpu_count() or 1, run))
+        shape = tuple(map(len, values))
+        columns = [column.reshape(shape) for column in found.T]
+        harmonics, status = (column.astype(np.int64) for column in columns[2:])
+        own = DesignMap(names, values, dof, columns[0], columns[1], harmonics, status)
+        set_fields(own, **vars(own))
+        if own.interrupted:
+            done = int((own.codes != Status.NOT_COMPUTED.code).sum())
+            raise stopped("design map", f"{done} of {len(cells)} cells", own)
+        return run.completed(own, "design map")
 
 
 def _two(parameters: object) -> tuple[tuple[str, str], tuple[NDArray[np.float64], ...]]:

@@ -44,6 +44,11 @@ class DesignMap:
         return tuple(tuple(map(Status.from_code, row)) for row in self.codes.tolist())
 
     @property
+    def interrupted(self) -> bool:
+        """Whether the map was stopped before all cells were done."""
+        return bool((self.codes == Status.NOT_COMPUTED.code).any())
+
+    @property
     def optimum(self) -> dict[str, float]:
         """The values of the least of the computed peaks.
 

@@ -94,7 +94,7 @@ class Peaks(Sweep):
     def _peaks_of(self, dofs: Sequence[str], measure: Measure) -> list[Peak]:
         """Return the peaks of several degrees of freedom, found together."""
         if self.model.problem.laws_not_monotone:
-            return [along(self, dof, measure) for dof in dofs]
+            return [_of_branch(self, dof, measure) for dof in dofs]
         groups = [[dof] for dof in dofs if (dof, measure) not in self._peaks]
         found = summits(self, groups, measure) if groups else []
         for (dof,), (_, peak) in zip(groups, found, strict=True):
@@ -104,7 +104,7 @@ class Peaks(Sweep):
     def _highest_of(self, dofs: Sequence[str], measure: Measure) -> tuple[int, Peak]:
         """Return which of some degrees of freedom has the highest peak, and the peak."""
         if self.model.problem.laws_not_monotone:
-            peaks = [along(self, dof, measure) for dof in dofs]
+            peaks = [_of_branch(self, dof, measure) for dof in dofs]
             return max(enumerate(peaks), key=lambda one: one[1].amplitude)
         return summits(self, [dofs], measure)[0]
 
@@ -141,6 +141,14 @@ def highest(result: Peaks, dof: str, measure: Measure, refine: Refine) -> Peak:
     return _told(result, dof, omega, peak, beside_gap)
 
 
+def _of_branch(result: Peaks, dof: str, measure: Measure) -> Peak:
+    """Return the highest point of a branch, unless nothing bounds the response on any."""
+    low, high = float(result.omega.min()), float(result.omega.max())
+    place = result.model.structure.index(dof)
+    omega = result.model.problem.unbounded([place], (low, high))
+    return along(result, dof, measure) if omega is None else _unbounded(dof, omega)
+
+
 def along(result: Peaks, dof: str, measure: Measure) -> Peak:
     """Return the highest point of a branch, by the parabola along it through its highest points."""
     return highest_of(result, dof, result.amplitude(dof, measure))
@@ -172,8 +180,10 @@ def highest_of(result: Peaks, dof: str, amplitude: Float) -> Peak:
     rise, bend = _parabola(y, before, after)
     at = 0.0 if bend >= 0.0 else min(max(-0.5 * rise / bend, -before), after)
     drift, turn = _parabola(x, before, after)
+    # Where the points are far apart along the branch it bends farther than they go.
+    omega_top = top[0] * (1.0 + at * (drift + at * turn))
     return Peak(
-        top[0] * (1.0 + at * (drift + at * turn)),
+        float(np.clip(omega_top, omega[around].min(), omega[around].max())),
         max(top[1] * (1.0 + at * (rise + at * bend)), top[1]),
         at_edge=False,
     )

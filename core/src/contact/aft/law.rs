@@ -228,6 +228,8 @@ impl ContactLaw for Aft<Box<dyn ContactLaw>> {
         is_odd() -> bool;
         is_monotone() -> bool;
         limits() -> Vec<f64>;
+        planes() -> Vec<[usize; 2]>;
+        grows() -> Vec<bool>;
         onsets() -> Vec<f64>;
         beginning() -> (Vec<f64>, Vec<f64>);
         assumed(motion: Motion<'_>) -> Option<AssumedStart>;

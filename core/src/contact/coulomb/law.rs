@@ -219,6 +219,19 @@ impl ContactLaw for Coulomb {
             .collect()
     }
 
+    fn planes(&self) -> Vec<[usize; 2]> {
+        if self.directions == 2 {
+            vec![[0, 1]]
+        } else {
+            Vec::new()
+        }
+    }
+
+    /// What presses it harder takes friction with it.
+    fn grows(&self) -> Vec<bool> {
+        (0..self.displacements()).map(|i| i == self.directions && !self.is_odd()).collect()
+    }
+
     fn unslipped(&self, begun: &AssumedStart, displacement: &[f64]) -> Option<Unslipped> {
         self.within_cone(begun, displacement)
     }

@@ -18,6 +18,9 @@ const AT_LIMIT: f64 = 1e-13;
 const AT_REST: f64 = 1e-9;
 /// Panels as short as this are taken as they are.
 const SHORTEST: f64 = 1e-9;
+/// Panels of a lap per harmonic from which on they are taken as they are: a contact that is moved a thousand
+/// million times as far as it slips at turns within an angle that nothing resolves.
+const MOST_PANELS: usize = 200;
 /// Most changes between stick and slip per harmonic and period: more are rounding.
 const MOST_CHANGES: usize = 64;
 
@@ -265,6 +268,7 @@ impl<'a> March<'a> {
         let mut theta = start;
         let mut length = self.first_length(start);
         let mut ended = false;
+        let most = MOST_PANELS * self.drive.harmonics().highest().max(4);
         while theta < end && !ended {
             let left = end - theta;
             length = if length >= left { left } else { length.min(0.5 * left) };
@@ -277,7 +281,8 @@ impl<'a> March<'a> {
             };
             let error = panel.error(self.plane, self.resolved);
             let tried = length;
-            if error > 1.0 && length > SHORTEST {
+            let spent = self.stretches.len() > most;
+            if error > 1.0 && length > SHORTEST && !spent {
                 length *= (0.8 * error.powf(-1.0 / NODES as f64)).clamp(0.1, 0.8);
                 continue;
             }
@@ -297,7 +302,7 @@ impl<'a> March<'a> {
             theta = if !ended && length == left { end } else { panel.end() };
             angle = panel.last_angle;
             let grown = tried * (0.9 * error.powf(-1.0 / NODES as f64)).clamp(0.3, 2.0);
-            panel.wanted = grown.min(self.plane.longest);
+            panel.wanted = if spent { self.plane.longest } else { grown.min(self.plane.longest) };
             length = panel.wanted;
             let state = State::Turning(Box::new(panel));
             self.stretches.push(Stretch { start: from, end: theta, state });

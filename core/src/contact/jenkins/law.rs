@@ -145,6 +145,10 @@ impl ContactLaw for Jenkins {
         vec![self.sliders.iter().map(Slider::limit).sum()]
     }
 
+    fn grows(&self) -> Vec<bool> {
+        vec![false; self.displacements()]
+    }
+
     fn onsets(&self) -> Vec<f64> {
         let rubs = self.sliders.iter().filter(|slider| slider.limit() > 0.0);
         let onset = rubs.map(|slider| slider.slip_force / slider.stiffness);

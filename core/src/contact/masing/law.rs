@@ -167,6 +167,10 @@ impl ContactLaw for Masing {
         vec![if self.curve.stiffness == 0.0 { 0.0 } else { self.curve.slip_force }]
     }
 
+    fn grows(&self) -> Vec<bool> {
+        vec![false; self.displacements()]
+    }
+
     /// It slips from the first on: a force at which that is little.
     fn onsets(&self) -> Vec<f64> {
         self.limits().iter().map(|limit| LITTLE * limit).collect()

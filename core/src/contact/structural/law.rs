@@ -48,6 +48,10 @@ impl ContactLaw for StructuralDamper {
         self.limits.clone()
     }
 
+    fn grows(&self) -> Vec<bool> {
+        vec![false; self.displacements()]
+    }
+
     fn return_map(
         &self,
         before: &[f64],

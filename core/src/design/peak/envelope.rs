@@ -1,6 +1,6 @@
 //! What solved points and their slopes say of the curves between them: how high each may be.
 
-use super::interpolant::Interpolant;
+use super::interpolant::{Interpolant, Knot};
 use super::samples::Sample;
 use std::ops::Range;
 
@@ -27,10 +27,28 @@ const SHORTEST: [f64; 2] = [1e-12, 1e-9];
 /// Share of a height that solutions leave open.
 const LEFT_OPEN: f64 = 1e-10;
 
+/// Part of an interval in which it is split if all of it is to be looked at.
+const MIDDLE: [f64; 2] = [0.25, 0.75];
+
+/// Where and how high a curve between two points may be.
+fn promised([left, right]: [Knot; 2], error: f64, reference: f64) -> (f64, f64) {
+    let tangent = Interpolant::tangent(left, right);
+    let tangent = (tangent.1 > (1.0 + BROAD) * reference).then_some(tangent);
+    let end = left.height.max(right.height);
+    let unconfirmed = (error == UNSEEN).then_some((0.5, (1.0 + UNCONFIRMED) * end));
+    let cubic = Interpolant::new(left, right, reference).promise(error);
+    higher(tangent.into_iter().chain(unconfirmed).chain([cubic]))
+}
+
+/// The first of the highest.
+fn higher(promises: impl Iterator<Item = (f64, f64)>) -> (f64, f64) {
+    promises.fold((0.5, 0.0), |best, one| if one.1 > best.1 { one } else { best })
+}
+
 /// What is known of an interval between two samples.
 #[derive(Debug, Clone)]
 pub(super) struct Gap {
-    /// Errors allowed for in the interpolants of all curves.
+    /// Errors allowed for in the interpolants of all curves and of their ceilings.
     errors: Vec<f64>,
     /// Where and how high the curves of each group may be.
     pub(super) promises: Vec<(f64, f64)>,
@@ -157,7 +175,7 @@ impl Envelope {
         if self.around(sample.at).any(|other| (other.at - sample.at).abs() <= near) {
             return;
         }
-        let errors = vec![UNSEEN; sample.knots.len()];
+        let errors = vec![UNSEEN; sample.curves().count()];
         let after = self.samples.partition_point(|other| other.at < sample.at);
         self.samples.insert(after, sample);
         let (first, last) = (after.saturating_sub(1), (after + 1).min(self.samples.len() - 1));
@@ -171,8 +189,7 @@ impl Envelope {
         let (left, right) = (&self.samples[interval], &self.samples[interval + 1]);
         let share = (sample.at - left.at) / (right.at - left.at);
         let bump = 16.0 * (share * (1.0 - share)).powi(2);
-        let missed = |i: usize| {
-            let (left, right, knot) = (left.knots[i], right.knots[i], sample.knots[i]);
+        let missed = |(knot, (left, right)): (Knot, (Knot, Knot))| {
             let reference = left.height.max(right.height).max(knot.height);
             let expected = Interpolant::new(left, right, reference).height(share);
             (expected / knot.height - 1.0).abs().min(1.0) / bump
@@ -180,9 +197,10 @@ impl Envelope {
         let gap = &self.gaps[interval];
         // Close to an end the error is small wherever the middle may be.
         let inside = (0.1..0.9).contains(&share);
-        let measured = gap.errors.iter().enumerate().map(|(i, &before)| {
+        let curves = sample.curves().zip(left.curves().zip(right.curves()));
+        let measured = gap.errors.iter().zip(curves).map(|(&before, curve)| {
             let most = if inside { 1.0 } else { before };
-            (missed(i).max(CHANCE * before), most)
+            (missed(curve).max(CHANCE * before), most)
         });
         let measured: Vec<(f64, f64)> = measured.collect();
         let errors = |part: f64| -> Vec<f64> {
@@ -201,24 +219,44 @@ impl Envelope {
     /// An interval between two samples, with what it promises.
     fn gap(&self, interval: usize, errors: Vec<f64>, idle: u32) -> Gap {
         let ends = &self.samples[interval..interval + 2];
-        let (left, right) = (&ends[0].knots, &ends[1].knots);
         // Of what is too short to be split the interpolant says all that can be known.
-        let errors = if self.is_shortest(ends) { vec![0.0; errors.len()] } else { errors };
+        let shortest = self.is_shortest(ends);
+        let errors = if shortest { vec![0.0; errors.len()] } else { errors };
         let promise = |group: usize| {
             let reference = self.height(group);
-            let promises = self.groups[group].clone().filter(|_| reference > 0.0).flat_map(|i| {
-                let tangent = Interpolant::tangent(left[i], right[i]);
-                let tangent = (tangent.1 > (1.0 + BROAD) * reference).then_some(tangent);
-                let higher = left[i].height.max(right[i].height);
-                let unconfirmed =
-                    (errors[i] == UNSEEN).then_some((0.5, (1.0 + UNCONFIRMED) * higher));
-                let cubic = Interpolant::new(left[i], right[i], reference).promise(errors[i]);
-                tangent.into_iter().chain(unconfirmed).chain([cubic])
+            let curves = self.groups[group].clone().filter(|_| reference > 0.0);
+            let promises = curves.flat_map(|i| {
+                let ends = [ends[0].knots[i], ends[1].knots[i]];
+                let own = promised(ends, errors[i], reference);
+                let above = (!shortest).then(|| self.above(interval, i, &errors, reference));
+                [own].into_iter().chain(above.flatten())
             });
-            promises.fold((0.5, 0.0), |best, one| if one.1 > best.1 { one } else { best })
+            higher(promises)
         };
         let promises = (0..self.groups.len()).map(promise).collect();
         Gap { errors, promises, idle, closed: false }
+    }
+
+    /// Where and how high a curve may be in an interval in which the phases of its harmonics turn too far
+    /// for its slopes, if that is higher than the reference.
+    fn above(
+        &self,
+        interval: usize,
+        curve: usize,
+        errors: &[f64],
+        reference: f64,
+    ) -> Option<(f64, f64)> {
+        let ends = &self.samples[interval..interval + 2];
+        let [left, right] = [&ends[0], &ends[1]].map(|end| end.overlays.get(curve));
+        let (left, right) = (left?, right?);
+        let error = errors[ends[0].knots.len() + curve];
+        let (share, height) = promised([left.ceiling, right.ceiling], error, reference);
+        let least = (1.0 + BROAD) * reference;
+        let counts = height > least && left.turns_to(right, reference);
+        // Where they fall on each other may be anywhere.
+        let level = left.ceiling.height.max(right.ceiling.height) > least;
+        let [nearest, farthest] = if level { MIDDLE } else { [0.0, 1.0] };
+        counts.then_some((share.clamp(nearest, farthest), height))
     }
 
     /// Where the slope of the top of a group vanishes, as the interval and the share of it, if more

@@ -251,8 +251,7 @@ impl<'a> PeakSearch<'a> {
     fn search(&mut self, model: &Model, resolution: Resolution) -> Result<Option<Found>, Error> {
         let seeds = std::mem::take(&mut self.seeds);
         let Some(found) = self.search_from(model, resolution, &seeds)? else { return Ok(None) };
-        let sure = found.tops.iter().all(Result::is_ok) && !found.torn;
-        if model.is_monotone() || sure {
+        if model.is_monotone() || (found.settled && !found.torn) {
             return Ok(Some(found));
         }
         let largest =

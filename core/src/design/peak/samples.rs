@@ -1,6 +1,7 @@
 //! Solved points with their slopes, and the starts they give.
 
 use super::interpolant::Knot;
+use super::overlay::Overlay;
 use crate::balance::Unknowns;
 
 /// A solved point with its slopes.
@@ -10,6 +11,8 @@ pub(crate) struct Sample {
     pub(crate) at: f64,
     /// Height and slope of every DOF looked at.
     pub(crate) knots: Vec<Knot>,
+    /// The harmonics of every DOF looked at, if several are loaded.
+    pub(super) overlays: Vec<Overlay>,
     pub(crate) unknowns: Unknowns,
     /// Derivative of the unknowns in frequency.
     pub(super) rate: Vec<f64>,
@@ -21,6 +24,11 @@ impl Sample {
     /// Whether no point slips.
     pub(super) fn sticks(&self) -> bool {
         !self.slips.contains(&true)
+    }
+
+    /// Heights with their slopes, and those that they would be if the harmonics fell on each other.
+    pub(super) fn curves(&self) -> impl Iterator<Item = Knot> + '_ {
+        self.knots.iter().copied().chain(self.overlays.iter().map(|one| one.ceiling))
     }
 
     fn extrapolated(&self, omega: f64) -> Unknowns {

@@ -10,9 +10,11 @@
 use super::envelope::{Envelope, Gap};
 use super::first_look::{Aim, Candidate, FirstLook, SEEN};
 use super::interpolant::Knot;
+use super::overlay::Overlay;
 use super::samples::{predicted, Sample};
 use crate::balance::{ForcedBalance, Linearised, Point, PointStatus, Unknowns};
 use crate::contact::Residual;
+use crate::fourier::Measure;
 use crate::Error;
 
 /// Points without a solution after which an interval is closed without another attempt.
@@ -70,6 +72,8 @@ pub(super) struct Found {
     pub(super) tops: Vec<Result<Top, Doubt>>,
     /// Whether laws that are not monotone leave neighbours on different branches.
     pub(super) torn: bool,
+    /// Whether there is a highest point of every group but those that nothing bounds, on whatever branch.
+    pub(super) settled: bool,
 }
 
 /// A search under way.
@@ -77,6 +81,8 @@ pub(super) struct Search<'a, 'b> {
     residual: Residual,
     pub(super) aim: &'b Aim,
     dofs: Vec<usize>,
+    /// Harmonics with a load, if there are several that the measure counts.
+    loaded: Vec<usize>,
     pub(super) balance: &'b mut ForcedBalance<'a>,
     pub(super) envelope: Envelope,
     /// Points without a solution.
@@ -95,11 +101,16 @@ impl<'a, 'b> Search<'a, 'b> {
         balance: &'b mut ForcedBalance<'a>,
     ) -> Self {
         let dofs = aim.groups.concat();
+        let mut loaded = balance.loaded_harmonics();
+        if loaded.len() < 2 || aim.measure == Measure::Fundamental {
+            loaded.clear();
+        }
         let envelope = Envelope::new(aim.groups.iter().map(Vec::len), narrowest);
         Self {
             residual,
             aim,
             dofs,
+            loaded,
             balance,
             envelope,
             failures: 0,
@@ -121,7 +132,7 @@ impl<'a, 'b> Search<'a, 'b> {
         let unbounded = |at: &Option<f64>| at.map(Doubt::unbounded);
         if look.unbounded.iter().all(Option::is_some) {
             let tops = look.unbounded.iter().filter_map(unbounded).map(Err).collect();
-            return Ok(Some(Found { samples: Vec::new(), tops, torn: false }));
+            return Ok(Some(Found { samples: Vec::new(), tops, torn: false, settled: true }));
         }
         for &omega in &look.omega {
             self.look(omega, seeds)?;
@@ -159,11 +170,13 @@ impl<'a, 'b> Search<'a, 'b> {
         if self.is_interrupted() {
             return Ok(None);
         }
+        let mut known = doubts.iter().zip(&look.unbounded);
+        let settled = known.all(|(doubt, at)| doubt.is_none() || at.is_some());
         let top = |group| self.envelope.top(group).map(|(sample, curve)| Top { sample, curve });
         let tops: Option<Vec<Top>> = (0..doubts.len()).map(top).collect();
         Ok(tops.map(|tops| {
             let tops = tops.into_iter().zip(doubts).map(|(top, doubt)| doubt.map_or(Ok(top), Err));
-            Found { tops: tops.collect(), samples: self.envelope.samples, torn }
+            Found { tops: tops.collect(), samples: self.envelope.samples, torn, settled }
         }))
     }
 
@@ -330,14 +343,22 @@ impl<'a, 'b> Search<'a, 'b> {
         let mut linearised = Linearised::new(&model, &table, self.residual, point.omega, unknowns)?;
         let jets = linearised.frequency_jets(&self.dofs, self.aim.measure)?;
         self.balance.add_profile(linearised.profile());
-        let Some((jets, rate)) = jets else {
+        let Some(jets) = jets else {
             self.failure = Some(PointStatus::Singular);
             return Ok(None);
         };
         let at = point.omega;
-        let knots = jets.iter().map(|&(height, slope)| Knot { at, height, slope }).collect();
+        let heights = jets.amplitudes.iter();
+        let knots = heights.map(|&(height, slope)| Knot { at, height, slope }).collect();
+        let harmonics = table.harmonics();
+        let series = jets.motions(harmonics.slots()).filter(|_| !self.loaded.is_empty());
+        let overlays = series.map(|(series, slopes)| {
+            Overlay::new(at, (harmonics, series, slopes), &self.loaded, self.aim.measure)
+        });
+        let overlays = overlays.collect();
         let slips = point.contacts.iter().map(|one| one.slip_fraction > 0.0).collect();
-        Ok(Some(Sample { at, knots, unknowns: unknowns.clone(), rate, slips }))
+        let (unknowns, rate) = (unknowns.clone(), jets.rate);
+        Ok(Some(Sample { at, knots, overlays, unknowns, rate, slips }))
     }
 
     /// A start from a similar response: its solution, moved by as much as the nearest sample
