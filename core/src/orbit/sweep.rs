@@ -39,7 +39,8 @@ pub fn orbit_sweep(orbits: PeriodicOrbits<'_>, omega: &[f64]) -> Result<Orbits, 
     let start = Instant::now();
     check_frequencies(omega)?;
     let (plan, kept) = (&orbits.plan, orbits.kept);
-    let pieces = if plan.unique { pieces(omega.len()) } else { vec![0..omega.len()] };
+    let whole = 0..omega.len();
+    let pieces = if plan.unique { pieces(whole.end) } else { [whole].to_vec() };
     let found = in_parts(pieces.len(), orbits.progress, |piece, progress| {
         let mut own = plan.clone().orbits(progress);
         let omega = &omega[pieces[piece].clone()];

@@ -67,6 +67,14 @@ fn springs(
     next
 }
 
+/// Whether a contact point slips in motions smaller than that of its onset, too, as laws do that always
+/// slip a little; sliders in parallel do not.
+fn slips_below(laws: &[Box<dyn ContactLaw>], point: usize, onset: f64) -> bool {
+    let mut of_points = laws.iter().flat_map(|law| std::iter::repeat_n(law, law.displacements()));
+    let below = of_points.nth(point).and_then(|law| law.first_harmonic(0.5 * onset));
+    below.is_none_or(|below| below.stiffness.im != 0.0)
+}
+
 /// A stuck mode that negative damping can excite.
 #[derive(Debug, Clone)]
 pub struct Onset {
@@ -83,7 +91,8 @@ pub struct Onset {
     laws: Vec<Option<Arc<dyn ContactLaw>>>,
     /// Its force there \[N\].
     pub limit: f64,
-    /// How many times further that contact slips as a whole: 1 unless it slips little by little.
+    /// How many times further that contact slips as a whole: 1 unless it slips little by little from the
+    /// least motion on.
     pub whole: f64,
     /// DOF that moves most, of those that no contact restrains, if there are any.
     pub dof: usize,
@@ -182,7 +191,10 @@ impl Onset {
             .max_by(moves)
             .unwrap_or(most);
         let gross = laws.iter().flat_map(|law| law.limits()).nth(point).filter(|f| f.is_finite());
-        let whole = gross.filter(|_| rest.is_none()).map_or(1.0, |gross| gross / limits[point]);
+        let size = amplitude * own.contact[point].norm();
+        let whole = gross
+            .filter(|_| rest.is_none() && slips_below(&laws, point, size))
+            .map_or(1.0, |gross| gross / limits[point]);
         let describing = laws.iter().flat_map(|law| {
             let own = law.first_harmonic(1.0).map(|_| Arc::from(law.with_scaled_forces(1.0)));
             std::iter::repeat_n(own, law.displacements())
