@@ -6,6 +6,8 @@
 use super::damping::Damping;
 use super::exponential::{exponential, Driven};
 use super::modal_system::ContactState;
+use super::oscillator::Oscillator;
+use super::quadrature::Quadrature;
 use crate::contact::PointState;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par};
@@ -14,7 +16,7 @@ use faer::{Accum, Mat, Par};
 const ROOM: usize = 1 << 23;
 /// Length of a stretch, or change of it, in units of the fastest rate, over which a power series takes fewer
 /// operations than an exponential.
-const CLOSE: f64 = 1.0;
+pub(super) const CLOSE: f64 = 1.0;
 /// Term of such a series, relative to the states, that is none.
 const ROUNDING: f64 = 1e-18;
 /// Columns that such a series takes at a time.
@@ -36,6 +38,7 @@ struct Propagator {
 pub(crate) struct Propagators {
     known: Vec<Propagator>,
     numbers: usize,
+    pub(super) quadrature: Quadrature,
 }
 
 /// Equations of the disturbances in one state of the contacts, in coordinates `(s η, η')`.
@@ -122,14 +125,22 @@ impl Equations {
     }
 
     fn exponential(&self, duration: f64) -> Driven {
-        exponential(&self.matrix(duration), |power| {
-            Driven::new(self.rates_of(&power.rows, duration))
-        })
+        let own = Oscillator::new(&self.stiffness, &self.scale, &self.damping, duration);
+        let found = own.and_then(|own| own.exponential(&self.input, duration));
+        found.unwrap_or_else(|| self.whole_exponential(duration))
+    }
+
+    /// The same of any equations.
+    fn whole_exponential(&self, duration: f64) -> Driven {
+        let power = |own: &Driven| Driven::new(self.rates_of(&own.rows, duration));
+        let matrix = self.matrix(duration);
+        let square = power(&matrix);
+        exponential(&matrix, square, power)
     }
 
     /// Takes states a little further, or back, by a power series: some columns at a time, whose terms stay
     /// in the cache.
-    fn correct(&self, states: &mut Mat<f64>, inputs: &Mat<f64>, duration: f64) {
+    pub(super) fn correct(&self, states: &mut Mat<f64>, inputs: &Mat<f64>, duration: f64) {
         if duration == 0.0 {
             return;
         }
@@ -220,30 +231,23 @@ fn add(numbers: &[f64], to: &mut [f64], squares: &mut [f64; LANES]) {
 }
 
 impl Propagators {
-    /// Takes states over a stretch.
+    /// Takes states over a stretch at these rates, or nearly so; the duration that is left.
     pub(super) fn advance(
         &mut self,
         equations: &Equations,
         regime: &ContactState,
-        duration: f64,
+        [duration, fastest]: [f64; 2],
         states: Mat<f64>,
         inputs: &Mat<f64>,
-    ) -> Mat<f64> {
-        let fastest = equations.scale.iter().fold(0.0_f64, |most, s| most.max(*s));
-        let mut states = states;
-        if duration * fastest <= CLOSE {
-            equations.correct(&mut states, inputs, duration);
-            return states;
-        }
+    ) -> (Mat<f64>, f64) {
         let close = |own: &&Propagator| {
             (own.duration - duration).abs() * fastest <= CLOSE
                 && own.points == regime.points
                 && own.strains == equations.strains
         };
         if let Some(own) = self.known.iter().find(close) {
-            let mut states = own.exponential.applied(states.as_ref(), inputs.as_ref());
-            equations.correct(&mut states, inputs, duration - own.duration);
-            return states;
+            let states = own.exponential.applied(states.as_ref(), inputs.as_ref());
+            return (states, duration - own.duration);
         }
         let exponential = equations.exponential(duration);
         let states = exponential.applied(states.as_ref(), inputs.as_ref());
@@ -253,6 +257,58 @@ impl Propagators {
             let (points, strains) = (regime.points.clone(), equations.strains.clone());
             self.known.push(Propagator { points, strains, duration, exponential });
         }
-        states
+        (states, 0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn numbers(rows: usize, columns: usize, turn: f64) -> Mat<f64> {
+        Mat::from_fn(rows, columns, |i, j| (turn + 3.1 * (i * columns + j) as f64).sin())
+    }
+
+    /// Modes far apart on springs that push along, or across.
+    fn equations(modes: usize, across: bool) -> Equations {
+        let (shapes, others) = (numbers(modes, 4, 0.2), numbers(modes, 4, 1.3));
+        let other = if across { &others } else { &shapes };
+        let mut stiffness = faer::Scale(7.0) * &shapes * other.transpose();
+        for j in 0..modes {
+            stiffness[(j, j)] += (1.0 + (j * j * j) as f64).powi(2);
+        }
+        let scale: Vec<f64> = (0..modes).map(|j| stiffness[(j, j)].abs().sqrt()).collect();
+        for (j, s) in scale.iter().enumerate() {
+            stiffness.col_as_slice_mut(j).iter_mut().for_each(|k| *k /= s);
+        }
+        let damping = Damping::Diagonal((0..modes).map(|j| 0.02 * (1 + j) as f64).collect());
+        let rates = Mat::zeros(3, modes);
+        let input = numbers(modes, 3, 0.9);
+        Equations { scale, strains: vec![0, 1, 2], rates, stiffness, damping, input }
+    }
+
+    /// The exponential by blocks is that of the whole matrix, also over thousands of turns of the fastest mode.
+    #[test]
+    fn two_blocks_give_the_whole_exponential() {
+        for modes in [1, 2, 9, 15] {
+            let own = equations(modes, false);
+            for duration in [1e-5, 1e-3, 0.02, 0.3, 4.0] {
+                let whole = own.whole_exponential(duration);
+                let blocks = Oscillator::new(&own.stiffness, &own.scale, &own.damping, duration)
+                    .and_then(|blocks| blocks.exponential(&own.input, duration));
+                let blocks = blocks.unwrap();
+                let turns = (duration * own.scale[modes - 1]).max(1.0);
+                let error = (&whole.rows - &blocks.rows).norm_max();
+
+                assert!(error < 1e-14 * turns, "{modes} {duration} {error:e}");
+            }
+        }
+    }
+
+    /// Springs that push across have no reciprocity.
+    #[test]
+    fn springs_across_take_the_whole_matrix() {
+        let own = equations(9, true);
+        assert!(Oscillator::new(&own.stiffness, &own.scale, &own.damping, 0.3).is_none());
     }
 }

@@ -1,12 +1,11 @@
 //! An exact periodic orbit, and how all that it tells is read off once it has closed.
 
-use super::quadrature::Quadrature;
 use super::residual::shifted;
 use super::settings::OrbitSettings;
 use super::shooting::Shooting;
 use super::survey::Survey;
 use crate::balance::Point;
-use crate::motion::{Event, State};
+use crate::motion::{Event, Quadrature, State};
 use faer::c64;
 use std::f64::consts::TAU;
 

@@ -2,7 +2,6 @@
 
 use super::closed::{left_error, Orbit};
 use super::plan::Plan;
-use super::quadrature::Quadrature;
 use super::rotation::Rotation;
 use super::settings::OrbitSettings;
 use super::shooting::Shooting;
@@ -11,7 +10,7 @@ use super::start::start_of;
 use crate::balance::{Kept, Point, PointStatus, Progress, Unknowns};
 use crate::contact::Residual;
 use crate::model::Model;
-use crate::motion::{ModalSystem, State};
+use crate::motion::{ModalSystem, Quadrature, State};
 use crate::solve::{newton, norm, NewtonSettings, Outcome, System as _};
 use crate::timing::Profile;
 use crate::Error;

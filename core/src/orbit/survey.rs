@@ -1,10 +1,9 @@
 //! What is read off a closed orbit: harmonics, extremes, energies, slip and events.
 
-use super::quadrature::Quadrature;
 use crate::balance::Point;
 use crate::contact::{PointState, PointSummary};
 use crate::motion::{
-    ContactState, Event, Extremes, FlowEvent, FlowSegment, ModalSystem, Turn, Values,
+    ContactState, Event, Extremes, FlowEvent, FlowSegment, ModalSystem, Quadrature, Turn, Values,
 };
 use faer::linalg::matmul::matmul;
 use faer::{c64, Accum, Mat, Par};
