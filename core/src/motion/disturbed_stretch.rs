@@ -1,7 +1,7 @@
 //! Disturbances of a motion over a stretch in which no contact changes its state.
 
 use super::modal_system::ContactState;
-use super::propagator::{Equations, Propagators, CLOSE};
+use super::propagator::{Equations, Propagators, SHORT};
 use super::transition::Transition;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par};
@@ -17,7 +17,7 @@ impl Transition<'_> {
         known: &mut Propagators,
     ) -> f64 {
         let fastest = self.system.rate(0.0);
-        if duration.abs() * fastest <= CLOSE {
+        if duration.abs() * fastest <= SHORT {
             return duration;
         }
         self.pass(regime, total, |equations, states, inputs| {

@@ -291,3 +291,97 @@ fn nodes(x: f64) -> usize {
     }
     count
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::{Closure, ContactLaw, Coulomb, Jenkins};
+    use crate::model::{Contact, Model};
+    use crate::motion::{Flow, LoopDisturbance, ModalSystem, State};
+    use crate::structure::{HarmonicLoad, Structure};
+    use faer::c64;
+    use std::f64::consts::TAU;
+
+    const OMEGA: f64 = 1.3;
+
+    /// A chain of twelve masses on stiff springs, on elements of which some slip, and on a planar contact.
+    fn model(coupled: bool) -> Model {
+        let size = 12;
+        let stiffness = Mat::from_fn(size, size, |i, j| match i.abs_diff(j) {
+            0 => 900.0 + 70.0 * i as f64,
+            1 => -400.0,
+            _ => 0.0,
+        });
+        let damping = Mat::from_fn(size, size, |i, j| {
+            let own = 0.3 * f64::from(u8::from(i == j));
+            own + if coupled && i.abs_diff(j) < 2 { 0.02 * (i + 2 * j) as f64 } else { 0.0 }
+        });
+        let mass = Mat::<f64>::identity(size, size);
+        let structure = Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref());
+        let at = |places: &[usize]| {
+            Mat::from_fn(places.len(), size, |i, j| f64::from(u8::from(places[i] == j)))
+        };
+        let mut contacts: Vec<Contact> = (0..8)
+            .map(|i| {
+                let law: Box<dyn ContactLaw> =
+                    Box::new(Jenkins::new(150.0, 1.0 + 0.7 * i as f64).unwrap());
+                Contact { law, rows: at(&[i]) }
+            })
+            .collect();
+        let pad = Coulomb::new(1, 0.4, 120.0, Some(150.0), Closure::Preload(9.0)).unwrap();
+        contacts.push(Contact { law: Box::new(pad), rows: at(&[9, 10]) });
+        let amplitude = (0..size).map(|i| c64::new(12.0 + i as f64, 0.0)).collect();
+        Model::new(structure.unwrap(), contacts, vec![HarmonicLoad { harmonic: 1, amplitude }])
+            .unwrap()
+    }
+
+    /// The phases of a period from a state, and the forces at its start.
+    fn phases(system: &ModalSystem, shift: f64) -> (Vec<LinearPhase>, Vec<f64>) {
+        let mut state = State::rest(system);
+        let mut flow = Flow::new(system, OMEGA);
+        flow.run(&mut state, 3.0 * TAU / OMEGA, &mut |_| {}).unwrap();
+        state.velocity.iter_mut().for_each(|v| *v += shift);
+        let (force, mut phases) = (state.force.clone(), Vec::new());
+        let until = state.time + TAU / OMEGA;
+        flow.run(&mut state, until, &mut |passage| {
+            LinearPhase::record(&mut phases, system, &passage);
+        })
+        .unwrap();
+        (phases, force)
+    }
+
+    /// The same as every stretch by itself, in small steps: of one motion, and of another one by the exponentials
+    /// of the first.
+    #[test]
+    fn disturbances_that_lag_come_to_the_same() {
+        for coupled in [false, true] {
+            let model = model(coupled);
+            let system = ModalSystem::new(&model).unwrap();
+            let own = Transition::new(&system, OMEGA);
+            let mut known = Propagators::default();
+            for shift in [0.0, 1e-3] {
+                let (phases, force) = phases(&system, shift);
+                assert!(phases.len() > 20, "{}", phases.len());
+                let held: Vec<_> = phases[0].regime.points.clone();
+                let mut by_steps = own.start(&phases, &held, &force);
+                for phase in &phases {
+                    let steps = (phase.duration * system.rate(0.0) / 0.3).ceil().max(1.0);
+                    for _ in 0..steps as usize {
+                        own.catch_up(&phase.regime, phase.duration / steps, &mut by_steps);
+                    }
+                    if let Some(onset) = &phase.onset {
+                        own.jump(onset, &mut by_steps);
+                    }
+                }
+                let none = &mut LoopDisturbance::default();
+                let found = own.along(&phases, &held, &force, none, &mut known);
+                let error = (&found - &by_steps).norm_max() / by_steps.norm_max();
+                assert!(error < 1e-12, "{coupled} {shift} {error:e}");
+                let zeros = |matrix: &Mat<f64>| {
+                    (0..matrix.nrows()).filter(|i| matrix.row(*i).norm_max() == 0.0).count()
+                };
+                assert_eq!(zeros(&found), zeros(&by_steps));
+            }
+        }
+    }
+}

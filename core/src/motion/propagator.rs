@@ -16,9 +16,13 @@ use faer::{Accum, Mat, Par};
 const ROOM: usize = 1 << 23;
 /// Length of a stretch, or change of it, in units of the fastest rate, over which a power series takes fewer
 /// operations than an exponential.
-pub(super) const CLOSE: f64 = 1.0;
+const CLOSE: f64 = 1.0;
+/// The same of a stretch that takes no exponential of its own.
+pub(super) const SHORT: f64 = 3.0;
 /// Term of such a series, relative to the states, that is none.
 const ROUNDING: f64 = 1e-18;
+/// Modes up to which products of matrices of any size cost the same.
+const FEW: usize = 8;
 /// Columns that such a series takes at a time.
 const COLUMNS: usize = 48;
 /// Numbers that are summed side by side.
@@ -125,6 +129,9 @@ impl Equations {
     }
 
     fn exponential(&self, duration: f64) -> Driven {
+        if self.scale.len() <= FEW {
+            return self.whole_exponential(duration);
+        }
         let own = Oscillator::new(&self.stiffness, &self.scale, &self.damping, duration);
         let found = own.and_then(|own| own.exponential(&self.input, duration));
         found.unwrap_or_else(|| self.whole_exponential(duration))

@@ -177,7 +177,12 @@ impl<'a> Transition<'a> {
 
     /// Derivative at the start: points that slip, and forces that their limits hold, vary with their
     /// limits alone.
-    fn start(&self, phases: &[LinearPhase], by: &[PointState], force: &[f64]) -> Mat<f64> {
+    pub(super) fn start(
+        &self,
+        phases: &[LinearPhase],
+        by: &[PointState],
+        force: &[f64],
+    ) -> Mat<f64> {
         let (size, first) = (self.size(), 2 * self.weight.len());
         let mut total = Mat::<f64>::identity(size, size);
         for body in self.system.bodies() {
@@ -287,7 +292,7 @@ impl<'a> Transition<'a> {
     }
 
     /// `S = I + Δf' ∇h / h'` from the left, in strains.
-    fn jump(&self, onset: &Onset, total: &mut Mat<f64>) {
+    pub(super) fn jump(&self, onset: &Onset, total: &mut Mat<f64>) {
         let Some(jump) = self.jump_of(onset) else { return };
         for column in 0..total.ncols() {
             let total = total.col_as_slice_mut(column);

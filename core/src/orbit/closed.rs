@@ -48,7 +48,7 @@ impl Orbit {
         self.start.as_ref()
     }
 
-    /// Passes along the orbit that closes at the unknowns `y` and reads everything off it; also whether a
+    /// Passes along the orbit that should close at the unknowns `y` and reads everything off it; also whether a
     /// contact in a plane touches its limit.
     pub(super) fn read(
         mut self,
@@ -70,7 +70,8 @@ impl Orbit {
             let highest = settings.harmonics;
             let mut survey = Survey::new(system, omega, half_wave, highest, observe, quadrature);
             let first = state.clone();
-            // The orbit has closed with this flow, so that it runs to the end.
+            // The last step of Newton's method is not looked at before: where the flow does not run to the end
+            // here, nothing closes, and what was read is dropped.
             if pass == 0 && !rotates {
                 let _ = shooting.observed_image(y, Some(&mut |passage| survey.include(passage)));
             } else {
