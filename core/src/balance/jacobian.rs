@@ -29,12 +29,7 @@ impl Condensed<'_> {
             for (index, load) in loads.iter_mut().enumerate() {
                 let motion = self.motion(index, x);
                 match &self.softened {
-                    None => {
-                        let law = &self.model.laws()[index];
-                        // Zeros of thousands of contacts that stick take more time than all else.
-                        let sticks = self.loss == 0.0 && law.surely_slips(motion) == Some(false);
-                        law.slip_load(motion, tangent && !sticks, load);
-                    }
+                    None => self.write_load(index, motion, tangent, load),
                     Some((share, laws)) => {
                         laws[index].slip_load(motion, tangent, load);
                         self.add_lost_stiffness(index, 1.0 - share, motion, tangent, load);

@@ -2,10 +2,11 @@
 
 use super::flow::{Flow, Next};
 use super::modal_system::ContactState;
-use super::polynomial::{first_zero, reach_of, sizes, DEGREE};
+use super::polynomial::{first_zero, reach_of, DEGREE};
 use super::power_series::sum_of_products;
 use super::sliding::Slide;
 use crate::contact::{Bound, PointState, SlipPlane};
+use crate::solve::size;
 
 /// Leading coefficient, relative to the largest, that counts as zero: a point is at its limit.
 const AT_LIMIT: f64 = 1e-14;
@@ -51,7 +52,8 @@ impl Flow<'_> {
             return self.comes_to_rest(natural, length);
         }
         let force = self.series.force(point);
-        if friction.is_none() && sizes(force, &self.powers[0], 1) < constant - force[0].abs() {
+        if friction.is_none() && size(&force[1..], &self.powers[0][1..]) < constant - force[0].abs()
+        {
             return Next::Stay;
         }
         let (mut limit, mut size, mut reach) = (constant, constant, reach_of(force, length));
@@ -123,7 +125,7 @@ impl Flow<'_> {
         }
         let (rate, [powers, slopes]) = (sign * regime.slip_rate[(point, point)], &self.powers);
         let u = self.series.contact(point);
-        rate * u[1] * powers[1] > rate.abs() * sizes(u, slopes, 2)
+        rate * u[1] * powers[1] > rate.abs() * size(&u[2..], &slopes[2..])
     }
 
     /// Whether the slip velocity at hand vanishes.

@@ -119,19 +119,6 @@ impl Search<'_> {
     }
 }
 
-/// Terms that are summed side by side.
-const LANES: usize = 8;
-
-/// `Σ |a_n| factor_n` of all powers beyond a first one, some terms side by side.
-pub(super) fn sizes(a: &[f64], factors: &[f64], beyond: usize) -> f64 {
-    let (a, factors) = (a[beyond..].chunks(LANES), factors[beyond..].chunks(LANES));
-    let mut sums = [0.0; LANES];
-    for (a, factors) in a.zip(factors) {
-        sums.iter_mut().zip(a.iter().zip(factors)).for_each(|(sum, (a, f))| *sum += a.abs() * f);
-    }
-    sums.iter().sum()
-}
-
 /// Most that a polynomial can move away from its start over a length.
 pub(super) fn reach_of(a: &[f64], length: f64) -> f64 {
     let (mut scale, mut reach) = (1.0, 0.0);

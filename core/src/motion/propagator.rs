@@ -9,6 +9,7 @@ use super::modal_system::ContactState;
 use super::oscillator::Oscillator;
 use super::quadrature::Quadrature;
 use crate::contact::PointState;
+use crate::solve::dot;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par};
 
@@ -25,8 +26,6 @@ const ROUNDING: f64 = 1e-18;
 const FEW: usize = 8;
 /// Columns that such a series takes at a time.
 const COLUMNS: usize = 48;
-/// Numbers that are summed side by side.
-const LANES: usize = 8;
 
 /// The exponential over a stretch.
 #[derive(Debug)]
@@ -210,30 +209,15 @@ impl pulp::NullaryFnOnce for AddTerm<'_> {
 
     #[inline(always)]
     fn call(self) -> f64 {
-        let mut squares = [0.0; LANES];
+        let mut squares = 0.0;
         for j in 0..self.term.ncols() {
             let term = self.term.col_as_slice_mut(j);
             self.equations.complete(self.before.col_as_slice(j), self.duration, term);
-            add(term, self.states.col_as_slice_mut(self.first + j), &mut squares);
+            let to = self.states.col_as_slice_mut(self.first + j).iter_mut();
+            to.zip(&*term).for_each(|(to, x)| *to += x);
+            squares += dot(term, term);
         }
-        squares.iter().sum::<f64>().sqrt()
-    }
-}
-
-/// Adds numbers to others, and their squares to sums.
-#[inline(always)]
-fn add(numbers: &[f64], to: &mut [f64], squares: &mut [f64; LANES]) {
-    let rest = numbers.chunks_exact(LANES).remainder();
-    let mut blocks = to.chunks_exact_mut(LANES);
-    for (to, numbers) in blocks.by_ref().zip(numbers.chunks_exact(LANES)) {
-        for ((to, x), square) in to.iter_mut().zip(numbers).zip(&mut *squares) {
-            *to += x;
-            *square += x * x;
-        }
-    }
-    for ((to, x), square) in blocks.into_remainder().iter_mut().zip(rest).zip(squares) {
-        *to += x;
-        *square += x * x;
+        squares.sqrt()
     }
 }
 
