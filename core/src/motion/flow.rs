@@ -40,7 +40,7 @@ pub struct Flow<'a> {
     pub(super) series: PowerSeries,
     pub(super) scratch: Vec<f64>,
     /// Powers of the length of the step at hand, and the same times their orders.
-    pub(super) powers: [[f64; DEGREE + 1]; 2],
+    pub(super) powers: [Vec<f64>; 2],
     interrupted: Option<&'a dyn Fn() -> bool>,
     granted: usize,
     /// Steps taken since the start.
@@ -59,7 +59,7 @@ impl<'a> Flow<'a> {
             omega,
             series,
             scratch: Vec::new(),
-            powers: [[0.0; DEGREE + 1]; 2],
+            powers: [(); 2].map(|()| vec![0.0; DEGREE + 1]),
             interrupted: None,
             granted: usize::MAX,
             steps: 0,

@@ -38,6 +38,13 @@ struct Rates<'a> {
     pressing: Vec<(usize, f64)>,
 }
 
+/// A point whose velocity moves strains at other rates.
+struct Change {
+    point: usize,
+    /// Their coordinates, and by how much less.
+    strains: Vec<(usize, f64)>,
+}
+
 impl Transition<'_> {
     /// Takes disturbances that lag through the change at the end of a phase; `false` where that is not worth
     /// it, or not simple.
@@ -65,7 +72,7 @@ impl Transition<'_> {
         let jump = phase.onset.as_ref().and_then(|onset| self.jump_of(onset));
         let columns = changed.len() * count + usize::from(jump.is_some());
         let [mut gains, mut forms] = [(); 2].map(|()| Mat::<f64>::zeros(size, columns));
-        for (number, (point, strains)) in changed.iter().enumerate() {
+        for (number, Change { point, strains }) in changed.iter().enumerate() {
             let place = number * count;
             let (mut gain, mut form) = (vec![0.0; size], vec![0.0; size]);
             strains.iter().for_each(|(at, rate)| gain[*at] = *rate);
@@ -93,13 +100,8 @@ impl Transition<'_> {
         true
     }
 
-    /// Points whose velocities move strains at other rates, with their coordinates and by how much less;
-    /// nothing if there are many, or if points press otherwise.
-    fn changes(
-        &self,
-        before: &ContactState,
-        after: &ContactState,
-    ) -> Option<Vec<(usize, Vec<(usize, f64)>)>> {
+    /// What changes; nothing if that is much, or if points press otherwise.
+    fn changes(&self, before: &ContactState, after: &ContactState) -> Option<Vec<Change>> {
         let first = 2 * self.weight.len();
         let tangents = [before, after].map(|regime| &regime.tangent);
         let normals = &self.system.normals;
@@ -118,7 +120,8 @@ impl Transition<'_> {
                 let less: Vec<f64> = column(0).iter().zip(column(1)).map(|(a, b)| a - b).collect();
                 if less.iter().any(|less| *less != 0.0) {
                     let strains = body.strains.clone().map(|strain| first + strain);
-                    changed.push((point, strains.zip(body.elastic.strains(&less)).collect()));
+                    let strains = strains.zip(body.elastic.strains(&less)).collect();
+                    changed.push(Change { point, strains });
                 }
             }
         }
