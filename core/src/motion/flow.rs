@@ -39,8 +39,8 @@ pub struct Flow<'a> {
     omega: f64,
     pub(super) series: PowerSeries,
     pub(super) scratch: Vec<f64>,
-    /// Powers of the length of the step at hand, and the same times their orders.
-    pub(super) powers: [Vec<f64>; 2],
+    /// Powers of the length of the step at hand, and behind them the same times their orders.
+    pub(super) powers: Vec<f64>,
     interrupted: Option<&'a dyn Fn() -> bool>,
     granted: usize,
     /// Steps taken since the start.
@@ -59,7 +59,7 @@ impl<'a> Flow<'a> {
             omega,
             series,
             scratch: Vec::new(),
-            powers: [(); 2].map(|()| vec![0.0; DEGREE + 1]),
+            powers: vec![0.0; 2 * (DEGREE + 1)],
             interrupted: None,
             granted: usize::MAX,
             steps: 0,
@@ -186,7 +186,7 @@ impl<'a> Flow<'a> {
     /// Prepares bounds on how far polynomials move over a length.
     fn measure(&mut self, length: f64) {
         let mut power = 1.0;
-        let [powers, slopes] = &mut self.powers;
+        let (powers, slopes) = self.powers.split_at_mut(DEGREE + 1);
         for (order, (own, slope)) in powers.iter_mut().zip(slopes).enumerate() {
             (*own, *slope) = (power, order as f64 * power);
             power *= length;

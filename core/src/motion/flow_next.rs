@@ -52,7 +52,8 @@ impl Flow<'_> {
             return self.comes_to_rest(natural, length);
         }
         let force = self.series.force(point);
-        if friction.is_none() && size(&force[1..], &self.powers[0][1..]) < constant - force[0].abs()
+        if friction.is_none()
+            && size(&force[1..], &self.powers[1..=DEGREE]) < constant - force[0].abs()
         {
             return Next::Stay;
         }
@@ -123,7 +124,8 @@ impl Flow<'_> {
         if self.system.together_with(point).len() != 1 {
             return false;
         }
-        let (rate, [powers, slopes]) = (sign * regime.slip_rate[(point, point)], &self.powers);
+        let rate = sign * regime.slip_rate[(point, point)];
+        let (powers, slopes) = self.powers.split_at(DEGREE + 1);
         let u = self.series.contact(point);
         rate * u[1] * powers[1] > rate.abs() * size(&u[2..], &slopes[2..])
     }
