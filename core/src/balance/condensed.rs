@@ -322,6 +322,20 @@ impl<'a> Condensed<'a> {
         }
     }
 
+    /// Writes the slip load of a contact. Of one that surely sticks zeros are not worth their room: those of
+    /// thousands take more time than all else.
+    pub(super) fn write_load(
+        &self,
+        index: usize,
+        motion: Motion<'_>,
+        tangent: bool,
+        load: &mut SlipLoad,
+    ) {
+        let law = &self.model.laws()[index];
+        let sticks = self.loss == 0.0 && law.surely_slips(motion) == Some(false);
+        law.slip_load(motion, tangent && !sticks, load);
+    }
+
     /// Adds to the slip load of a contact what the loss takes off the force, `q −= i η D u`.
     pub(super) fn add_loss(
         &self,

@@ -29,7 +29,7 @@ impl Condensed<'_> {
             for (index, load) in loads.iter_mut().enumerate() {
                 let motion = self.motion(index, x);
                 match &self.softened {
-                    None => self.model.laws()[index].slip_load(motion, tangent, load),
+                    None => self.write_load(index, motion, tangent, load),
                     Some((share, laws)) => {
                         laws[index].slip_load(motion, tangent, load);
                         self.add_lost_stiffness(index, 1.0 - share, motion, tangent, load);

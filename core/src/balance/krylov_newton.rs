@@ -6,6 +6,7 @@
 //! as the error of the solution is judged.
 
 use super::slip_jacobian::{Border, Loads};
+use crate::contact::SlipLoad;
 use crate::solve::{dot, gmres, norm, KrylovSettings};
 use crate::structure::{Compliance, ContactCoordinates, ContactShapes, ModalOrders, QuasiStatic};
 use faer::{Mat, MatRef};
@@ -241,19 +242,32 @@ impl KrylovNewton {
 
     /// `∂Q v` of the active points, slots × points, in the room for it.
     fn loaded<'b>(&self, loads: Loads<'_>, v: &[f64], out: &'b mut [f64]) -> MatRef<'b, f64> {
-        let product = || {
-            let mut first = 0;
-            for load in loads.loads.iter().filter(|load| load.active) {
-                let size = load.value.len();
-                let rows = load.tangent.chunks_exact(size).zip(&mut out[first..first + size]);
-                for (row, out) in rows {
-                    *out = dot(row, &v[first..first + size]);
-                }
-                first += size;
-            }
-        };
-        pulp::Arch::new().dispatch(product);
+        pulp::Arch::new().dispatch(Product { loads: loads.loads, v, out: &mut *out });
         MatRef::from_column_major_slice(out, loads.slots, self.points.len())
+    }
+}
+
+/// `∂Q v` of the active contacts. A closure would be no part of what vector instructions are chosen for.
+struct Product<'a> {
+    loads: &'a [SlipLoad],
+    v: &'a [f64],
+    out: &'a mut [f64],
+}
+
+impl pulp::NullaryFnOnce for Product<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let mut first = 0;
+        for load in self.loads.iter().filter(|load| load.active) {
+            let size = load.value.len();
+            let rows = load.tangent.chunks_exact(size).zip(&mut self.out[first..first + size]);
+            for (row, out) in rows {
+                *out = dot(row, &self.v[first..first + size]);
+            }
+            first += size;
+        }
     }
 }
 

@@ -29,7 +29,7 @@ pub struct Motion<'a> {
 pub struct SlipLoad {
     /// q, laid out as the displacement \[N\].
     pub value: Vec<f64>,
-    /// ∂q/∂u, row by row, empty unless it was asked for [N/m].
+    /// ∂q/∂u, row by row, empty unless it was asked for, as it may be of a contact that sticks [N/m].
     pub tangent: Vec<f64>,
     /// Whether the tangent differs from zero: a contact that sticks for good is a linear spring
     /// and drops out of the Newton system.

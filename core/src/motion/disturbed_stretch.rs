@@ -1,21 +1,46 @@
 //! Disturbances of a motion over a stretch in which no contact changes its state.
 
 use super::modal_system::ContactState;
-use super::propagator::{Equations, Propagators};
+use super::propagator::{Equations, Propagators, SHORT};
 use super::transition::Transition;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par};
 
 impl Transition<'_> {
-    /// Takes disturbances, column by column, over a duration \[s\]. Strains that neither move nor are
-    /// disturbed, those of contacts that slip under a constant limit, take no part.
+    /// Takes disturbances, column by column, over a duration \[s\], or nearly so; the duration that is left,
+    /// which may be negative. One over which nothing moves far is left as a whole.
     pub(super) fn advance(
         &self,
         regime: &ContactState,
         duration: f64,
         total: &mut Mat<f64>,
         known: &mut Propagators,
-    ) {
+    ) -> f64 {
+        let fastest = self.system.rate(0.0);
+        if duration.abs() * fastest <= SHORT {
+            return duration;
+        }
+        self.pass(regime, total, |equations, states, inputs| {
+            known.advance(equations, regime, [duration, fastest], states, inputs)
+        })
+    }
+
+    /// Takes disturbances over a short duration, or back, by power series.
+    pub(super) fn catch_up(&self, regime: &ContactState, duration: f64, total: &mut Mat<f64>) {
+        self.pass(regime, total, |equations, mut states, inputs| {
+            equations.correct(&mut states, inputs, duration);
+            (states, 0.0)
+        });
+    }
+
+    /// Takes disturbances along by the equations of a regime. Strains that neither move nor are disturbed,
+    /// those of contacts that slip under a constant limit, take no part.
+    fn pass(
+        &self,
+        regime: &ContactState,
+        total: &mut Mat<f64>,
+        along: impl FnOnce(&Equations, Mat<f64>, &Mat<f64>) -> (Mat<f64>, f64),
+    ) -> f64 {
         let first = 2 * self.weight.len();
         let mut disturbed = vec![false; total.nrows() - first];
         let mut columns = Vec::with_capacity(total.ncols());
@@ -39,7 +64,8 @@ impl Transition<'_> {
             inputs.for_each(|(g, strain)| *g = strains[*strain]);
         }
         own.add_strains(-1.0, &states, &mut inputs);
-        states = known.advance(&own, regime, duration, states, &inputs);
+        let left;
+        (states, left) = along(&own, states, &inputs);
         own.add_strains(1.0, &states, &mut inputs);
         let factors: Vec<f64> = factors.iter().map(|factor| 1.0 / factor).collect();
         for (j, &column) in columns.iter().enumerate() {
@@ -49,6 +75,7 @@ impl Transition<'_> {
             let inputs = inputs.col_as_slice(j).iter().zip(&own.strains);
             inputs.for_each(|(g, strain)| strains[*strain] = *g);
         }
+        left
     }
 
     /// The equations in one state of the contacts, with all strains that move or are disturbed.
@@ -110,7 +137,7 @@ impl Transition<'_> {
     }
 
     /// `g' = L⁺ T u'` as strains, points and factors that are not 0.
-    fn strain_rates(&self, regime: &ContactState) -> Vec<(usize, usize, f64)> {
+    pub(super) fn strain_rates(&self, regime: &ContactState) -> Vec<(usize, usize, f64)> {
         let mut all = Vec::new();
         for body in self.system.bodies() {
             for i in body.points.clone() {

@@ -1,4 +1,5 @@
-//! The exponential of a matrix, and of one whose last rows are zeros.
+//! The exponential of a matrix, by products of whatever stands for it and its functions; and of one whose last
+//! rows are zeros.
 
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatRef, Par};
@@ -33,6 +34,23 @@ const SUMS: [[f64; 5]; 5] = [
     [0.0, 0.0, -9.233_646_193_671_186e-2, -1.693_649_390_020_817_2e-2, -1.400_867_981_820_361e-5],
 ];
 
+/// A function of a matrix: a polynomial, or the exponential.
+pub(super) trait Function: Sized {
+    /// The product with another function of the same matrix.
+    fn times(&self, other: &Self) -> Self;
+
+    /// The product with itself.
+    fn squared(&self) -> Self {
+        self.times(self)
+    }
+
+    /// `constant + Σ factor · function`.
+    fn combined<const N: usize>(constant: f64, factors: [f64; N], functions: [&Self; N]) -> Self;
+
+    /// A size of its matrix that is that of no product larger than the product of the sizes.
+    fn norm(&self) -> f64;
+}
+
 /// A polynomial of the matrix `[[M, N], [0, 0]]`: what linear equations `y' = M y + N r` with constant inputs
 /// r do in a time.
 #[derive(Debug, Clone)]
@@ -58,7 +76,9 @@ impl Driven {
         matmul(out.as_mut(), Accum::Add, driven, inputs, 1.0, Par::Seq);
         out
     }
+}
 
+impl Function for Driven {
     fn times(&self, other: &Self) -> Self {
         let size = self.rows.nrows();
         let mut rows = Mat::zeros(size, self.rows.ncols());
@@ -73,13 +93,15 @@ impl Driven {
         Self { rows, kept: self.kept * other.kept }
     }
 
-    fn plus(mut self, other: &Self) -> Self {
-        for j in 0..self.rows.ncols() {
-            let out = self.rows.col_as_slice_mut(j).iter_mut();
-            out.zip(other.rows.col_as_slice(j)).for_each(|(out, a)| *out += a);
+    fn combined<const N: usize>(constant: f64, factors: [f64; N], functions: [&Self; N]) -> Self {
+        let size = functions[0].rows.nrows();
+        let kept = factors.iter().zip(functions).map(|(factor, own)| factor * own.kept);
+        let kept = constant + kept.sum::<f64>();
+        let mut rows = sum_of(factors, functions.map(|own| &own.rows));
+        for j in 0..size {
+            rows[(j, j)] += constant;
         }
-        self.kept += other.kept;
-        self
+        Self { rows, kept }
     }
 
     fn norm(&self) -> f64 {
@@ -87,18 +109,17 @@ impl Driven {
     }
 }
 
-/// Exponential of a matrix with its products `power`: its Taylor polynomial of degree 8 or 18 in three or five
+/// Exponential of a matrix with its square and its products `power`: its Taylor polynomial of degree 8 or 18 in three or five
 /// products (Bader, Blanes and Casas 2019), scaled and squared. Powers of the matrix tell its size more
 /// closely than it does (Al-Mohy and Higham 2009).
-pub(super) fn exponential(a: &Driven, power: impl Fn(&Driven) -> Driven) -> Driven {
-    let second = power(a);
+pub(super) fn exponential<F: Function>(a: &F, second: F, power: impl Fn(&F) -> F) -> F {
     if a.norm() <= REACH[0] {
         return of_small(a, &second);
     }
     let third = power(&second);
-    let sixth = third.times(&third);
+    let sixth = third.squared();
     // ‖A^k‖ of k ≥ 19 is at most that of the sixth power as often as it is in k − 7, and of lower ones.
-    let root = |power: &Driven, order: f64| power.norm().log2() / order;
+    let root = |power: &F, order: f64| power.norm().log2() / order;
     let most = root(&second, 2.0).max(root(&third, 3.0));
     let size = (12.0 * root(&sixth, 6.0).min(most) + 7.0 * most) / 19.0;
     let squarings = (size - REACH[1].log2()).ceil().max(0.0);
@@ -107,56 +128,71 @@ pub(super) fn exponential(a: &Driven, power: impl Fn(&Driven) -> Driven) -> Driv
     let powers = [a, &second, &third, &sixth];
     let sum = |coefficients: &[f64; 5]| {
         let factors = [0, 1, 2, 3].map(|k| coefficients[k + 1] * scales[k]);
-        combined(coefficients[0], factors, powers)
+        F::combined(coefficients[0], factors, powers)
     };
     let [first, low, middle, offset, last] = [0, 1, 2, 3, 4].map(|number| sum(&SUMS[number]));
-    let ninth = first.times(&last).plus(&offset);
-    let mut value = middle.plus(&ninth).times(&ninth).plus(&low);
+    let ninth = plus(&first.times(&last), &offset);
+    let mut value = plus(&plus(&middle, &ninth).times(&ninth), &low);
     for _ in 0..squarings as usize {
-        value = value.times(&value);
+        value = value.squared();
     }
     value
 }
 
+fn plus<F: Function>(one: &F, other: &F) -> F {
+    F::combined(0.0, [1.0, 1.0], [one, other])
+}
+
 /// Degree 8, without scaling.
-fn of_small(a: &Driven, second: &Driven) -> Driven {
+fn of_small<F: Function>(a: &F, second: &F) -> F {
     let root = 177.0_f64.sqrt();
     let third = 2.0 / 3.0;
     let ratio = third * (1.0 + root) / 88.0;
-    let fourth = second.times(&combined(0.0, [ratio, 0.25 * ratio], [a, second]));
+    let fourth = second.times(&F::combined(0.0, [ratio, 0.25 * ratio], [a, second]));
     let factors = [
         (11.0 * root - 11.0) / (1260.0 * third),
         (11.0 * root - 99.0) / (5040.0 * third),
         (89.0 - root) / (5040.0 * third * third),
     ];
     let constant = (29.0 * root - 271.0) / (315.0 * third);
-    let eighth = combined(0.0, [third, 1.0], [second, &fourth]).times(&combined(
+    let eighth = F::combined(0.0, [third, 1.0], [second, &fourth]).times(&F::combined(
         constant,
         factors,
         [a, second, &fourth],
     ));
     let bend = (857.0 - 58.0 * root) / 630.0;
-    combined(1.0, [1.0, bend, 1.0], [a, second, &eighth])
+    F::combined(1.0, [1.0, bend, 1.0], [a, second, &eighth])
 }
 
-/// `constant + Σ factor · matrix`.
-fn combined<const N: usize>(constant: f64, factors: [f64; N], matrices: [&Driven; N]) -> Driven {
-    let (size, columns) = (matrices[0].rows.nrows(), matrices[0].rows.ncols());
-    let mut sum = Driven { rows: Mat::zeros(size, columns), kept: constant };
-    for (factor, matrix) in factors.iter().zip(matrices) {
-        sum.kept += factor * matrix.kept;
-    }
-    for j in 0..columns {
-        let out = sum.rows.col_as_slice_mut(j);
-        for (factor, matrix) in factors.iter().zip(matrices).filter(|(factor, _)| **factor != 0.0) {
-            let own = matrix.rows.col_as_slice(j);
-            out.iter_mut().zip(own).for_each(|(out, a)| *out += factor * a);
-        }
-        if j < size {
-            out[j] += constant;
-        }
-    }
+/// `Σ factor · matrix`.
+pub(super) fn sum_of<const N: usize>(factors: [f64; N], matrices: [&Mat<f64>; N]) -> Mat<f64> {
+    let mut sum = Mat::zeros(matrices[0].nrows(), matrices[0].ncols());
+    pulp::Arch::new().dispatch(Sum { factors, matrices, sum: &mut sum });
     sum
+}
+
+/// A closure would be no part of what vector instructions are chosen for.
+struct Sum<'a, const N: usize> {
+    factors: [f64; N],
+    matrices: [&'a Mat<f64>; N],
+    sum: &'a mut Mat<f64>,
+}
+
+impl<const N: usize> pulp::NullaryFnOnce for Sum<'_, N> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        for j in 0..self.sum.ncols() {
+            let out = self.sum.col_as_slice_mut(j);
+            for (factor, matrix) in self.factors.iter().zip(self.matrices) {
+                if *factor != 0.0 {
+                    let own = matrix.col_as_slice(j);
+                    out.iter_mut().zip(own).for_each(|(out, a)| *out += factor * a);
+                }
+            }
+        }
+    }
 }
 
 #[cfg(test)]
@@ -165,7 +201,7 @@ mod tests {
 
     fn of(a: Mat<f64>) -> Mat<f64> {
         let a = Driven::new(a);
-        exponential(&a, |power| a.times(power)).rows
+        exponential(&a, a.squared(), |power| a.times(power)).rows
     }
 
     /// Coefficients of the polynomials themselves, from a matrix with but one diagonal.

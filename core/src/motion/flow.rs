@@ -9,7 +9,7 @@
 use super::flow_event::{Event, FlowEvent, FlowSegment, Halt};
 use super::microslip::Turn;
 use super::modal_system::{dot, ContactState, ModalSystem};
-use super::polynomial::reach_of;
+use super::polynomial::{reach_of, DEGREE};
 use super::power_series::PowerSeries;
 use super::state::State;
 use crate::contact::{Bound, PointState};
@@ -39,6 +39,8 @@ pub struct Flow<'a> {
     omega: f64,
     pub(super) series: PowerSeries,
     pub(super) scratch: Vec<f64>,
+    /// Powers of the length of the step at hand, and behind them the same times their orders.
+    pub(super) powers: Vec<f64>,
     interrupted: Option<&'a dyn Fn() -> bool>,
     granted: usize,
     /// Steps taken since the start.
@@ -57,6 +59,7 @@ impl<'a> Flow<'a> {
             omega,
             series,
             scratch: Vec::new(),
+            powers: vec![0.0; 2 * (DEGREE + 1)],
             interrupted: None,
             granted: usize::MAX,
             steps: 0,
@@ -120,6 +123,7 @@ impl<'a> Flow<'a> {
             self.series.expand(self.system, &regime, self.omega, state);
             self.steps += 1;
             let natural = self.series.reach();
+            self.measure(natural);
             let rest = (until - state.time) * self.series.rate();
             let last = natural >= rest;
             let mut length = natural.min(rest);
@@ -177,6 +181,16 @@ impl<'a> Flow<'a> {
             regime = after;
         }
         Ok(())
+    }
+
+    /// Prepares bounds on how far polynomials move over a length.
+    fn measure(&mut self, length: f64) {
+        let mut power = 1.0;
+        let (powers, slopes) = self.powers.split_at_mut(DEGREE + 1);
+        for (order, (own, slope)) in powers.iter_mut().zip(slopes).enumerate() {
+            (*own, *slope) = (power, order as f64 * power);
+            power *= length;
+        }
     }
 
     /// Whether a contact without sliders moves within a length by no more than rounding.

@@ -6,6 +6,7 @@ use super::polynomial::{first_zero, reach_of, DEGREE};
 use super::power_series::sum_of_products;
 use super::sliding::Slide;
 use crate::contact::{Bound, PointState, SlipPlane};
+use crate::solve::size;
 
 /// Leading coefficient, relative to the largest, that counts as zero: a point is at its limit.
 const AT_LIMIT: f64 = 1e-14;
@@ -44,10 +45,18 @@ impl Flow<'_> {
             _ => return Next::Stay,
         };
         if state != PointState::Stuck {
+            if self.slips_on(regime, point, state.sign()) {
+                return Next::Stay;
+            }
             self.fill_slip_velocity(regime, point, state.sign(), natural);
             return self.comes_to_rest(natural, length);
         }
         let force = self.series.force(point);
+        if friction.is_none()
+            && size(&force[1..], &self.powers[1..=DEGREE]) < constant - force[0].abs()
+        {
+            return Next::Stay;
+        }
         let (mut limit, mut size, mut reach) = (constant, constant, reach_of(force, length));
         if let Some((friction, normal)) = friction {
             let pressing = self.series.force(normal);
@@ -108,6 +117,17 @@ impl Flow<'_> {
             Some(share) => Next::At(share * natural, to),
             None => first,
         }
+    }
+
+    /// Whether the velocity of a point that slips by itself changes by less than itself along the step.
+    fn slips_on(&self, regime: &ContactState, point: usize, sign: f64) -> bool {
+        if self.system.together_with(point).len() != 1 {
+            return false;
+        }
+        let rate = sign * regime.slip_rate[(point, point)];
+        let (powers, slopes) = self.powers.split_at(DEGREE + 1);
+        let u = self.series.contact(point);
+        rate * u[1] * powers[1] > rate.abs() * size(&u[2..], &slopes[2..])
     }
 
     /// Whether the slip velocity at hand vanishes.

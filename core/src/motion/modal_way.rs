@@ -1,9 +1,7 @@
 //! What the modes do over a stretch of a motion: enough to tell where most displacements have no extreme.
 
 use super::power_series::PowerSeries;
-
-/// Numbers that are summed side by side.
-const LANES: usize = 8;
+use crate::solve::dot_with_size as sums;
 
 /// Displacements at both ends of a stretch, velocities at its start, and the most that both change by, mode
 /// by mode; velocities per length of the stretch.
@@ -93,28 +91,5 @@ impl pulp::NullaryFnOnce for Widen<'_> {
                 range[1] = range[1].max(value);
             }
         }
-    }
-}
-
-/// `Σ a b` and `Σ |a| c`, some terms side by side.
-#[inline(always)]
-fn sums(a: &[f64], [b, c]: [&Vec<f64>; 2]) -> [f64; 2] {
-    let (mut products, mut sizes) = ([0.0; LANES], [0.0; LANES]);
-    let [of_a, of_b, of_c] = [a, b.as_slice(), c.as_slice()].map(|all| all.chunks_exact(LANES));
-    let rest = [&of_a, &of_b, &of_c].map(|all| all.remainder());
-    for ((a, b), c) in of_a.zip(of_b).zip(of_c) {
-        add([a, b, c], &mut products, &mut sizes);
-    }
-    add(rest, &mut products, &mut sizes);
-    [products.iter().sum(), sizes.iter().sum()]
-}
-
-/// Adds products, and those of sizes, to sums.
-#[inline(always)]
-fn add([a, b, c]: [&[f64]; 3], products: &mut [f64; LANES], sizes: &mut [f64; LANES]) {
-    let to = products.iter_mut().zip(sizes);
-    for ((product, size), ((a, b), c)) in to.zip(a.iter().zip(b).zip(c)) {
-        *product += a * b;
-        *size += a.abs() * c;
     }
 }

@@ -6,7 +6,10 @@
 use super::damping::Damping;
 use super::exponential::{exponential, Driven};
 use super::modal_system::ContactState;
+use super::oscillator::Oscillator;
+use super::quadrature::Quadrature;
 use crate::contact::PointState;
+use crate::solve::dot;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par};
 
@@ -15,12 +18,14 @@ const ROOM: usize = 1 << 23;
 /// Length of a stretch, or change of it, in units of the fastest rate, over which a power series takes fewer
 /// operations than an exponential.
 const CLOSE: f64 = 1.0;
+/// The same of a stretch that takes no exponential of its own.
+pub(super) const SHORT: f64 = 3.0;
 /// Term of such a series, relative to the states, that is none.
 const ROUNDING: f64 = 1e-18;
+/// Modes up to which products of matrices of any size cost the same.
+const FEW: usize = 8;
 /// Columns that such a series takes at a time.
 const COLUMNS: usize = 48;
-/// Numbers that are summed side by side.
-const LANES: usize = 8;
 
 /// The exponential over a stretch.
 #[derive(Debug)]
@@ -36,6 +41,7 @@ struct Propagator {
 pub(crate) struct Propagators {
     known: Vec<Propagator>,
     numbers: usize,
+    pub(super) quadrature: Quadrature,
 }
 
 /// Equations of the disturbances in one state of the contacts, in coordinates `(s η, η')`.
@@ -122,14 +128,25 @@ impl Equations {
     }
 
     fn exponential(&self, duration: f64) -> Driven {
-        exponential(&self.matrix(duration), |power| {
-            Driven::new(self.rates_of(&power.rows, duration))
-        })
+        if self.scale.len() <= FEW {
+            return self.whole_exponential(duration);
+        }
+        let own = Oscillator::new(&self.stiffness, &self.scale, &self.damping, duration);
+        let found = own.and_then(|own| own.exponential(&self.input, duration));
+        found.unwrap_or_else(|| self.whole_exponential(duration))
+    }
+
+    /// The same of any equations.
+    fn whole_exponential(&self, duration: f64) -> Driven {
+        let power = |own: &Driven| Driven::new(self.rates_of(&own.rows, duration));
+        let matrix = self.matrix(duration);
+        let square = power(&matrix);
+        exponential(&matrix, square, power)
     }
 
     /// Takes states a little further, or back, by a power series: some columns at a time, whose terms stay
     /// in the cache.
-    fn correct(&self, states: &mut Mat<f64>, inputs: &Mat<f64>, duration: f64) {
+    pub(super) fn correct(&self, states: &mut Mat<f64>, inputs: &Mat<f64>, duration: f64) {
         if duration == 0.0 {
             return;
         }
@@ -192,58 +209,36 @@ impl pulp::NullaryFnOnce for AddTerm<'_> {
 
     #[inline(always)]
     fn call(self) -> f64 {
-        let mut squares = [0.0; LANES];
+        let mut squares = 0.0;
         for j in 0..self.term.ncols() {
             let term = self.term.col_as_slice_mut(j);
             self.equations.complete(self.before.col_as_slice(j), self.duration, term);
-            add(term, self.states.col_as_slice_mut(self.first + j), &mut squares);
+            let to = self.states.col_as_slice_mut(self.first + j).iter_mut();
+            to.zip(&*term).for_each(|(to, x)| *to += x);
+            squares += dot(term, term);
         }
-        squares.iter().sum::<f64>().sqrt()
-    }
-}
-
-/// Adds numbers to others, and their squares to sums.
-#[inline(always)]
-fn add(numbers: &[f64], to: &mut [f64], squares: &mut [f64; LANES]) {
-    let rest = numbers.chunks_exact(LANES).remainder();
-    let mut blocks = to.chunks_exact_mut(LANES);
-    for (to, numbers) in blocks.by_ref().zip(numbers.chunks_exact(LANES)) {
-        for ((to, x), square) in to.iter_mut().zip(numbers).zip(&mut *squares) {
-            *to += x;
-            *square += x * x;
-        }
-    }
-    for ((to, x), square) in blocks.into_remainder().iter_mut().zip(rest).zip(squares) {
-        *to += x;
-        *square += x * x;
+        squares.sqrt()
     }
 }
 
 impl Propagators {
-    /// Takes states over a stretch.
+    /// Takes states over a stretch at these rates, or nearly so; the duration that is left.
     pub(super) fn advance(
         &mut self,
         equations: &Equations,
         regime: &ContactState,
-        duration: f64,
+        [duration, fastest]: [f64; 2],
         states: Mat<f64>,
         inputs: &Mat<f64>,
-    ) -> Mat<f64> {
-        let fastest = equations.scale.iter().fold(0.0_f64, |most, s| most.max(*s));
-        let mut states = states;
-        if duration * fastest <= CLOSE {
-            equations.correct(&mut states, inputs, duration);
-            return states;
-        }
+    ) -> (Mat<f64>, f64) {
         let close = |own: &&Propagator| {
             (own.duration - duration).abs() * fastest <= CLOSE
                 && own.points == regime.points
                 && own.strains == equations.strains
         };
         if let Some(own) = self.known.iter().find(close) {
-            let mut states = own.exponential.applied(states.as_ref(), inputs.as_ref());
-            equations.correct(&mut states, inputs, duration - own.duration);
-            return states;
+            let states = own.exponential.applied(states.as_ref(), inputs.as_ref());
+            return (states, duration - own.duration);
         }
         let exponential = equations.exponential(duration);
         let states = exponential.applied(states.as_ref(), inputs.as_ref());
@@ -253,6 +248,58 @@ impl Propagators {
             let (points, strains) = (regime.points.clone(), equations.strains.clone());
             self.known.push(Propagator { points, strains, duration, exponential });
         }
-        states
+        (states, 0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn numbers(rows: usize, columns: usize, turn: f64) -> Mat<f64> {
+        Mat::from_fn(rows, columns, |i, j| (turn + 3.1 * (i * columns + j) as f64).sin())
+    }
+
+    /// Modes far apart on springs that push along, or across.
+    fn equations(modes: usize, across: bool) -> Equations {
+        let (shapes, others) = (numbers(modes, 4, 0.2), numbers(modes, 4, 1.3));
+        let other = if across { &others } else { &shapes };
+        let mut stiffness = faer::Scale(7.0) * &shapes * other.transpose();
+        for j in 0..modes {
+            stiffness[(j, j)] += (1.0 + (j * j * j) as f64).powi(2);
+        }
+        let scale: Vec<f64> = (0..modes).map(|j| stiffness[(j, j)].abs().sqrt()).collect();
+        for (j, s) in scale.iter().enumerate() {
+            stiffness.col_as_slice_mut(j).iter_mut().for_each(|k| *k /= s);
+        }
+        let damping = Damping::Diagonal((0..modes).map(|j| 0.02 * (1 + j) as f64).collect());
+        let rates = Mat::zeros(3, modes);
+        let input = numbers(modes, 3, 0.9);
+        Equations { scale, strains: vec![0, 1, 2], rates, stiffness, damping, input }
+    }
+
+    /// The exponential by blocks is that of the whole matrix, also over thousands of turns of the fastest mode.
+    #[test]
+    fn two_blocks_give_the_whole_exponential() {
+        for modes in [1, 2, 9, 15] {
+            let own = equations(modes, false);
+            for duration in [1e-5, 1e-3, 0.02, 0.3, 4.0] {
+                let whole = own.whole_exponential(duration);
+                let blocks = Oscillator::new(&own.stiffness, &own.scale, &own.damping, duration)
+                    .and_then(|blocks| blocks.exponential(&own.input, duration));
+                let blocks = blocks.unwrap();
+                let turns = (duration * own.scale[modes - 1]).max(1.0);
+                let error = (&whole.rows - &blocks.rows).norm_max();
+
+                assert!(error < 1e-14 * turns, "{modes} {duration} {error:e}");
+            }
+        }
+    }
+
+    /// Springs that push across have no reciprocity.
+    #[test]
+    fn springs_across_take_the_whole_matrix() {
+        let own = equations(9, true);
+        assert!(Oscillator::new(&own.stiffness, &own.scale, &own.damping, 0.3).is_none());
     }
 }

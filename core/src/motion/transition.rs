@@ -138,11 +138,21 @@ impl<'a> Transition<'a> {
         let own = self.start(phases, held, force);
         let mut total = Mat::zeros(own.nrows(), own.ncols() + loops.columns);
         total.get_mut(.., ..own.ncols()).copy_from(&own);
-        for phase in phases {
+        // By how long the disturbances lag behind.
+        let mut lag = 0.0;
+        for (number, phase) in phases.iter().enumerate() {
             if let Some((series, length)) = &phase.slide {
                 self.slide(&phase.regime, series, *length, &mut total, loops);
-            } else if phase.duration > 0.0 {
-                self.advance(&phase.regime, phase.duration, &mut total, known);
+            } else {
+                lag = self.advance(&phase.regime, lag + phase.duration, &mut total, known);
+            }
+            if lag != 0.0 {
+                let next = phases.get(number + 1).filter(|_| phase.turns.is_empty());
+                if next.is_some_and(|next| self.pass_late(phase, next, lag, &mut total, known)) {
+                    continue;
+                }
+                self.catch_up(&phase.regime, lag, &mut total);
+                lag = 0.0;
             }
             if let Some(onset) = &phase.onset {
                 self.jump(onset, &mut total);
@@ -167,7 +177,12 @@ impl<'a> Transition<'a> {
 
     /// Derivative at the start: points that slip, and forces that their limits hold, vary with their
     /// limits alone.
-    fn start(&self, phases: &[LinearPhase], by: &[PointState], force: &[f64]) -> Mat<f64> {
+    pub(super) fn start(
+        &self,
+        phases: &[LinearPhase],
+        by: &[PointState],
+        force: &[f64],
+    ) -> Mat<f64> {
         let (size, first) = (self.size(), 2 * self.weight.len());
         let mut total = Mat::<f64>::identity(size, size);
         for body in self.system.bodies() {
@@ -277,43 +292,54 @@ impl<'a> Transition<'a> {
     }
 
     /// `S = I + Δf' ∇h / h'` from the left, in strains.
-    fn jump(&self, onset: &Onset, total: &mut Mat<f64>) {
+    pub(super) fn jump(&self, onset: &Onset, total: &mut Mat<f64>) {
+        let Some(jump) = self.jump_of(onset) else { return };
+        for column in 0..total.ncols() {
+            let total = total.col_as_slice_mut(column);
+            let force: f64 = jump.form.iter().map(|(at, part)| part * total[*at]).sum();
+            jump.gains.iter().for_each(|(at, gain)| total[*at] += gain * force);
+            jump.vanishing.iter().for_each(|at| total[*at] = 0.0);
+        }
+    }
+
+    /// What an event does to disturbances.
+    pub(super) fn jump_of(&self, onset: &Onset) -> Option<Jump> {
         let first = 2 * self.weight.len();
         let bodies = self.system.bodies();
-        let Some(own) = bodies.iter().find(|body| body.points.contains(&onset.point)) else {
-            return;
-        };
+        let own = bodies.iter().find(|body| body.points.contains(&onset.point))?;
         let row = onset.point - own.points.start;
-        let mut jumps = Vec::new();
+        let mut gains = Vec::new();
         for body in bodies {
             let jump = &onset.jump[body.points.clone()];
             if jump.iter().any(|jump| *jump != 0.0) {
-                jumps.extend(body.strains.clone().zip(body.elastic.strains(jump)));
+                let strains = body.strains.clone().map(|strain| first + strain);
+                gains.extend(strains.zip(body.elastic.strains(jump)));
             }
         }
         // The strains of what a normal force presses are those of single points.
-        let mut vanish = Vec::new();
+        let mut vanishing = Vec::new();
         for point in &onset.released {
             let row = point - own.points.start;
             let held = (0..own.elastic.rank()).filter(|a| own.elastic.root()[(row, *a)] != 0.0);
-            vanish.extend(held.map(|a| own.strains.start + a));
+            vanishing.extend(held.map(|a| first + own.strains.start + a));
         }
         // Else rounding would leave something of a force that a constant limit holds.
         let constant = onset.slope.iter().all(|slope| *slope == 0.0);
         let slope = if constant { &[] } else { onset.slope.as_slice() };
         if constant && own.elastic.rank() == 1 && onset.jump[onset.point] == -1.0 {
-            vanish.push(own.strains.start);
+            vanishing.push(first + own.strains.start);
         }
-        for column in 0..total.ncols() {
-            let total = total.col_as_slice_mut(column);
-            let strains = &total[first + own.strains.start..first + own.strains.end];
-            let roots = (0..own.elastic.rank()).map(|a| own.elastic.root()[(row, a)]);
-            let mut force: f64 = roots.zip(strains).map(|(root, g)| root * g).sum();
-            for ((slope, weight), x) in slope.iter().zip(&self.weight).zip(&*total) {
-                force += slope / weight * x;
-            }
-            jumps.iter().for_each(|(strain, jump)| total[first + strain] += jump * force);
-            vanish.iter().for_each(|strain| total[first + strain] = 0.0);
-        }
+        let roots = (0..own.elastic.rank()).map(|a| own.elastic.root()[(row, a)]);
+        let strains = own.strains.clone().map(|strain| first + strain);
+        let displaced = slope.iter().zip(&self.weight).map(|(slope, weight)| slope / weight);
+        let form = strains.zip(roots).chain(displaced.enumerate()).collect();
+        Some(Jump { gains, form, vanishing })
     }
+}
+
+/// What an event does to disturbances: `1 + gains formᵀ`, and coordinates of which nothing remains.
+pub(super) struct Jump {
+    pub(super) gains: Vec<(usize, f64)>,
+    pub(super) form: Vec<(usize, f64)>,
+    pub(super) vanishing: Vec<usize>,
 }

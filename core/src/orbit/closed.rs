@@ -1,12 +1,11 @@
 //! An exact periodic orbit, and how all that it tells is read off once it has closed.
 
-use super::quadrature::Quadrature;
 use super::residual::shifted;
 use super::settings::OrbitSettings;
 use super::shooting::Shooting;
 use super::survey::Survey;
 use crate::balance::Point;
-use crate::motion::{Event, State};
+use crate::motion::{Event, Quadrature, State};
 use faer::c64;
 use std::f64::consts::TAU;
 
@@ -49,7 +48,7 @@ impl Orbit {
         self.start.as_ref()
     }
 
-    /// Passes along the orbit that closes at the unknowns `y` and reads everything off it; also whether a
+    /// Passes along the orbit that should close at the unknowns `y` and reads everything off it; also whether a
     /// contact in a plane touches its limit.
     pub(super) fn read(
         mut self,
@@ -71,7 +70,8 @@ impl Orbit {
             let highest = settings.harmonics;
             let mut survey = Survey::new(system, omega, half_wave, highest, observe, quadrature);
             let first = state.clone();
-            // The orbit has closed with this flow, so that it runs to the end.
+            // The last step of Newton's method is not looked at before: where the flow does not run to the end
+            // here, nothing closes, and what was read is dropped.
             if pass == 0 && !rotates {
                 let _ = shooting.observed_image(y, Some(&mut |passage| survey.include(passage)));
             } else {

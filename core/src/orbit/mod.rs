@@ -16,7 +16,6 @@ mod periodic;
 mod pieces;
 mod plan;
 mod price;
-mod quadrature;
 mod remembered_turns;
 mod rescue;
 mod residual;

@@ -2,7 +2,6 @@
 
 use super::closed::{left_error, Orbit};
 use super::plan::Plan;
-use super::quadrature::Quadrature;
 use super::rotation::Rotation;
 use super::settings::OrbitSettings;
 use super::shooting::Shooting;
@@ -11,7 +10,7 @@ use super::start::start_of;
 use crate::balance::{Kept, Point, PointStatus, Progress, Unknowns};
 use crate::contact::Residual;
 use crate::model::Model;
-use crate::motion::{ModalSystem, State};
+use crate::motion::{ModalSystem, Quadrature, State};
 use crate::solve::{newton, norm, NewtonSettings, Outcome, System as _};
 use crate::timing::Profile;
 use crate::Error;
@@ -184,19 +183,30 @@ impl<'a> PeriodicOrbits<'a> {
             shooting.rotate(rotation, &system);
         }
         let solved = self.shoot(&mut shooting, omega, neighbour);
-        let solved = solved.map(|(mut y, mut iterations)| {
+        let solved = solved.map(|(mut y, mut iterations, closed)| {
             let (residual, newton) = (self.plan.settings.residual, self.newton());
             let assumption = Assumption { residual, sliders: &self.sliders };
             let chosen = choose(&mut shooting, assumption, &mut y, newton, &mut iterations);
-            (y, iterations, chosen)
+            (y, iterations, closed, chosen)
         });
         let steps = shooting.flow.steps;
         self.profile.evaluations += steps;
-        let Some((mut y, mut iterations, chosen)) = solved else {
+        let Some((mut y, mut iterations, closed, chosen)) = solved else {
             return Ok(self.empty(omega, PointStatus::NotComputed));
         };
         if chosen == Chosen::Lost && shooting.interrupted() {
             return Ok(self.empty(omega, PointStatus::NotComputed));
+        }
+        if !closed || chosen == Chosen::Lost {
+            // What is far from closing is not worth a reading.
+            let (closing, _) = misses(&mut shooting, &y);
+            if closing.is_nan() && shooting.interrupted() {
+                return Ok(self.empty(omega, PointStatus::NotComputed));
+            }
+            if closing.is_nan() || closing > NEARLY || chosen == Chosen::Lost {
+                self.profile.evaluations += shooting.flow.steps - steps;
+                return Ok(self.unclosed(omega, &shooting, closing, iterations));
+            }
         }
         let mut read = self.read(&mut shooting, omega, &y);
         if read.closing.is_nan() && shooting.interrupted() {
@@ -217,16 +227,8 @@ impl<'a> PeriodicOrbits<'a> {
         }
         self.profile.evaluations += shooting.flow.steps - steps;
         let Reading { mut orbit, touches, closing, left, .. } = read;
-        if closing.is_nan() || closing > CLOSED || chosen == Chosen::Lost {
-            let status = match shooting.flow.is_spent() {
-                _ if self.plan.is_let_go() => PointStatus::Free,
-                true => PointStatus::StepsLimit,
-                false => PointStatus::Stalled,
-            };
-            let mut orbit = self.empty(omega, status);
-            orbit.response.residual = closing;
-            orbit.response.iterations = iterations;
-            return Ok(orbit);
+        if closing.is_nan() || closing > CLOSED {
+            return Ok(self.unclosed(omega, &shooting, closing, iterations));
         }
         let Some(left) = left else {
             // Contacts have let go of a body that they alone hold: it may as well stand elsewhere.
@@ -263,6 +265,25 @@ impl<'a> PeriodicOrbits<'a> {
         Ok(orbit)
     }
 
+    /// What there is to say where no orbit has closed.
+    fn unclosed(
+        &self,
+        omega: f64,
+        shooting: &Shooting<'_>,
+        closing: f64,
+        iterations: usize,
+    ) -> Orbit {
+        let status = match shooting.flow.is_spent() {
+            _ if self.plan.is_let_go() => PointStatus::Free,
+            true => PointStatus::StepsLimit,
+            false => PointStatus::Stalled,
+        };
+        let mut orbit = self.empty(omega, status);
+        orbit.response.residual = closing;
+        orbit.response.iterations = iterations;
+        orbit
+    }
+
     /// Passes along the orbit that closes at the unknowns `y` and reads it off.
     fn read(&mut self, shooting: &mut Shooting<'_>, omega: f64, y: &[f64]) -> Reading {
         let start = std::time::Instant::now();
@@ -270,8 +291,7 @@ impl<'a> PeriodicOrbits<'a> {
         let (settings, quadrature) = (&self.plan.settings, &mut self.quadrature);
         let (orbit, touches) = empty.read(shooting, y, settings, self.plan.observe, quadrature);
         self.profile.recovery += start.elapsed();
-        let mut residual = vec![0.0; y.len()];
-        shooting.residual(y, &mut residual);
+        let (closing, residual) = misses(shooting, y);
         let size = norm(y).max(f64::MIN_POSITIVE);
         let mut left = vec![0.0; y.len()];
         let determined =
@@ -279,7 +299,7 @@ impl<'a> PeriodicOrbits<'a> {
         Reading {
             orbit,
             touches,
-            closing: norm(&residual) / size,
+            closing,
             error: norm(&left) / size,
             left: determined.then_some(left),
         }
@@ -315,13 +335,13 @@ impl<'a> PeriodicOrbits<'a> {
     }
 
     /// Newton's method from the neighbour, from harmonic balance, and at last from where the
-    /// motion itself leads. `None` if the caller has ended the analysis.
+    /// motion itself leads; also whether it has converged. `None` if the caller has ended the analysis.
     fn shoot(
         &mut self,
         shooting: &mut Shooting<'_>,
         omega: f64,
         neighbour: Option<&State>,
-    ) -> Option<(Vec<f64>, usize)> {
+    ) -> Option<(Vec<f64>, usize, bool)> {
         let settings = self.newton();
         let mut iterations = 0;
         let mut y = match neighbour {
@@ -360,13 +380,20 @@ impl<'a> PeriodicOrbits<'a> {
             let report = newton(shooting, &mut trial, settings);
             iterations += report.iterations;
             match report.outcome {
-                Outcome::Converged => return Some((trial, iterations)),
+                Outcome::Converged => return Some((trial, iterations, true)),
                 Outcome::Interrupted => return None,
                 Outcome::Stalled | Outcome::Singular if shooting.interrupted() => return None,
                 Outcome::Stalled | Outcome::Singular if shooting.flow.is_spent() => break,
                 Outcome::Stalled | Outcome::Singular => {}
             }
         }
-        Some((y, iterations))
+        Some((y, iterations, false))
     }
+}
+
+/// Closing error of an orbit, relative to the motion, and as it is.
+fn misses(shooting: &mut Shooting<'_>, y: &[f64]) -> (f64, Vec<f64>) {
+    let mut residual = vec![0.0; y.len()];
+    shooting.residual(y, &mut residual);
+    (norm(&residual) / norm(y).max(f64::MIN_POSITIVE), residual)
 }

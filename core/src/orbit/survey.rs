@@ -1,10 +1,9 @@
 //! What is read off a closed orbit: harmonics, extremes, energies, slip and events.
 
-use super::quadrature::Quadrature;
 use crate::balance::Point;
-use crate::contact::{PointState, PointSummary};
+use crate::contact::{PointState, PointSummary, SlipPlane};
 use crate::motion::{
-    ContactState, Event, Extremes, FlowEvent, FlowSegment, ModalSystem, Turn, Values,
+    ContactState, Event, Extremes, FlowEvent, FlowSegment, ModalSystem, Quadrature, Turn, Values,
 };
 use faer::linalg::matmul::matmul;
 use faer::{c64, Accum, Mat, Par};
@@ -108,7 +107,7 @@ impl<'a> Survey<'a> {
         let Self { quadrature, values, waves, sums, .. } = self;
         let rule = quadrature.rule(count);
         segment.series.write_values(rule.iter().map(|(x, _)| x * segment.length), values);
-        let slips = segment.regime.points.iter().any(|state| state.slips());
+        let slipping = Slipping::of(system, segment.regime);
         let (mut damping, mut load) = (vec![0.0; modes], vec![0.0; modes]);
         let step = if self.half_wave { 2 } else { 1 };
         let orders: Vec<usize> = (usize::from(self.half_wave)..self.orders).step_by(step).collect();
@@ -138,9 +137,7 @@ impl<'a> Survey<'a> {
                     summary.slip_fraction += share * (1.0 - left);
                 }
             }
-            if slips {
-                add_friction(system, segment.regime, time, [speed, force], &mut self.contacts);
-            }
+            slipping.add_friction(system, time, [speed, force], &mut self.contacts);
             // Half a period of an odd motion counts twice.
             let share = weight * angle / TAU * if self.half_wave { 2.0 } else { 1.0 };
             let turn = c64::new(phase.cos(), -phase.sin());
@@ -287,23 +284,40 @@ fn nodes(segment: &FlowSegment<'_>, angle: f64) -> usize {
     count
 }
 
-/// Adds the friction work of a short time with these velocities and forces of the points.
-fn add_friction(
-    system: &ModalSystem,
-    regime: &ContactState,
-    time: f64,
-    [speed, force]: [&[f64]; 2],
-    contacts: &mut [PointSummary],
-) {
-    for (point, summary) in contacts.iter_mut().enumerate() {
-        if regime.points[point].sign() != 0.0 {
-            let own = system.together_with(point);
-            let slip: f64 = own.map(|j| regime.slip_rate[(point, j)] * speed[j]).sum();
-            summary.dissipation += time * force[point] * slip;
+/// The points that slip on a stretch.
+struct Slipping {
+    /// Each with the points that move it, and how far.
+    points: Vec<(usize, Vec<(usize, f64)>)>,
+    planes: Vec<SlipPlane>,
+}
+
+impl Slipping {
+    fn of(system: &ModalSystem, regime: &ContactState) -> Self {
+        let slips = |point: &usize| regime.points[*point].sign() != 0.0;
+        let rates = |point: usize| {
+            let own = system.together_with(point).map(|j| (j, regime.slip_rate[(point, j)]));
+            (point, own.filter(|(_, rate)| *rate != 0.0).collect())
+        };
+        let slides = |plane: &&SlipPlane| regime.points[plane.points[0]] == PointState::Sliding;
+        Self {
+            points: (0..system.points()).filter(slips).map(rates).collect(),
+            planes: system.planes().iter().filter(slides).copied().collect(),
         }
     }
-    for plane in system.planes() {
-        if regime.points[plane.points[0]] == PointState::Sliding {
+
+    /// Adds the friction work of a short time with these velocities and forces of the points.
+    fn add_friction(
+        &self,
+        system: &ModalSystem,
+        time: f64,
+        [speed, force]: [&[f64]; 2],
+        contacts: &mut [PointSummary],
+    ) {
+        for (point, rates) in &self.points {
+            let slip: f64 = rates.iter().map(|(j, rate)| rate * speed[*j]).sum();
+            contacts[*point].dissipation += time * force[*point] * slip;
+        }
+        for plane in &self.planes {
             let (along, pull) = system.pull(plane, force, speed);
             for (point, e) in plane.points.into_iter().zip(along) {
                 let slip = e * pull / plane.stiffness;

@@ -9,6 +9,7 @@ use crate::motion::State;
 use crate::parallel::in_parts;
 use crate::timing::Profile;
 use crate::Error;
+use std::iter;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -39,8 +40,8 @@ pub fn orbit_sweep(orbits: PeriodicOrbits<'_>, omega: &[f64]) -> Result<Orbits, 
     let start = Instant::now();
     check_frequencies(omega)?;
     let (plan, kept) = (&orbits.plan, orbits.kept);
-    let whole = 0..omega.len();
-    let pieces = if plan.unique { pieces(whole.end) } else { [whole].to_vec() };
+    let pieces =
+        if plan.unique { pieces(omega.len()) } else { iter::once(0..omega.len()).collect() };
     let found = in_parts(pieces.len(), orbits.progress, |piece, progress| {
         let mut own = plan.clone().orbits(progress);
         let omega = &omega[pieces[piece].clone()];

@@ -24,7 +24,7 @@ pub use broyden::{broyden, BroydenEffort, FirstJacobian};
 pub use continuation::{across, at_parameter, tangent, Advance, Continuation, Steps};
 pub use curve::Curve;
 pub use cyclic_tridiagonal::{BlockRow, CyclicTridiagonal};
-pub(crate) use dot::dot;
+pub(crate) use dot::{dot, dot_with_size, scaled_square, size};
 pub use eigen::{hermitian_eigen, hermitian_eigen_of, hermitian_eigenvalues};
 pub use homotopy::{homotopy, Parametrised};
 pub use krylov::{gmres, KrylovReport, KrylovSettings};

@@ -241,9 +241,12 @@ class Model:
 
     def raise_own(self) -> None:
         """Raise what a law in Python raised while the core called it."""
-        for contact in self.contacts:
-            if isinstance(contact, ContactLaw):
-                contact.raise_own()
+        for contact in self._own_laws:
+            contact.raise_own()
+
+    @cached_property
+    def _own_laws(self) -> tuple[ContactLaw, ...]:
+        return tuple(one for one in self.contacts if isinstance(one, ContactLaw))
 
     def law_index(self, contact: int, point: int = 0) -> int:
         """Return the position among the laws of the core of that of a contact, or of its point."""

@@ -44,11 +44,9 @@ def _bands(matrix: Matrix) -> Matrix | None:
     size = len(matrix)
     if size < _LARGE:
         return None
-    # The places of all numbers would take several times as much memory as a full matrix.
-    filled = matrix != 0.0
-    rows = np.flatnonzero(filled.any(axis=1))
-    first, last = filled.argmax(axis=1), size - 1 - filled[:, ::-1].argmax(axis=1)
-    width = int(np.maximum(rows - first[rows], last[rows] - rows).max(initial=0))
+    from scipy.linalg import bandwidth
+
+    width = max(bandwidth(matrix))
     if width * _LARGE > size:
         return None
     bands = np.zeros((width + 1, size))

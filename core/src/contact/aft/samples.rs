@@ -29,8 +29,11 @@ impl Samples {
         let count = if half { samples / 2 } else { samples };
         let [basis, functions] = motion.table.basis(samples, count);
         let mut displacement = vec![0.0; motion.displacement.len() / slots * count];
-        pulp::Arch::new().dispatch(|| {
-            sample(motion.displacement, [slots, count], &functions, &mut displacement)
+        pulp::Arch::new().dispatch(Sample {
+            all: motion.displacement,
+            sizes: [slots, count],
+            functions: &functions,
+            displacement: &mut displacement,
         });
         Self { count, sign: if half { -1.0 } else { 1.0 }, basis, functions, displacement }
     }
@@ -43,14 +46,45 @@ impl Samples {
 
     /// Coefficients of values at the instants, as if all functions had the square of the sines.
     pub fn project(&self, values: &[f64], series: &mut [f64]) {
-        let weight = 2.0 / self.count as f64;
-        pulp::Arch::new().dispatch(|| {
-            for (coefficient, function) in
-                series.iter_mut().zip(self.functions.chunks_exact(self.count.max(1)))
-            {
-                *coefficient = weight * dot(values, function);
-            }
-        });
+        pulp::Arch::new().dispatch(Project { samples: self, values, series });
+    }
+}
+
+/// Closures would be no part of what vector instructions are chosen for.
+struct Project<'a> {
+    samples: &'a Samples,
+    values: &'a [f64],
+    series: &'a mut [f64],
+}
+
+impl pulp::NullaryFnOnce for Project<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let count = self.samples.count;
+        let weight = 2.0 / count as f64;
+        let functions = self.samples.functions.chunks_exact(count.max(1));
+        for (coefficient, function) in self.series.iter_mut().zip(functions) {
+            *coefficient = weight * dot(self.values, function);
+        }
+    }
+}
+
+struct Sample<'a> {
+    all: &'a [f64],
+    /// Coefficients of a point, and instants.
+    sizes: [usize; 2],
+    functions: &'a [f64],
+    displacement: &'a mut [f64],
+}
+
+impl pulp::NullaryFnOnce for Sample<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        sample(self.all, self.sizes, self.functions, self.displacement);
     }
 }
 

@@ -11,7 +11,7 @@ use crate::balance::{
 };
 use crate::fourier::{Harmonics, SampleTable};
 use crate::model::{FlutterModel, Model, NegativeDamping, Variation};
-use crate::orbit::quadrature::Quadrature;
+use crate::motion::Quadrature;
 use crate::solve::{at_parameter, tangent, Bounds, Branch, Curve, Steps};
 use crate::timing::Profile;
 use crate::Error;

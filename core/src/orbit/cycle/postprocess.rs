@@ -5,8 +5,7 @@ use super::settings::Cycle;
 use crate::balance::{Point, PointStatus};
 use crate::contact::PointState;
 use crate::fourier::SampleTable;
-use crate::motion::{Flow, FlowEvent, ModalSystem, State};
-use crate::orbit::quadrature::Quadrature;
+use crate::motion::{Flow, FlowEvent, ModalSystem, Quadrature, State};
 use crate::orbit::survey::Survey;
 use std::f64::consts::{PI, TAU};
 

@@ -5,13 +5,13 @@ use std::f64::consts::PI;
 
 /// Nodes and weights by number of nodes, each computed once.
 #[derive(Debug, Default)]
-pub(super) struct Quadrature {
+pub(crate) struct Quadrature {
     rules: BTreeMap<usize, Vec<(f64, f64)>>,
 }
 
 impl Quadrature {
     /// The rule with `count` nodes, exact for polynomials of degree `2 count − 1`.
-    pub(super) fn rule(&mut self, count: usize) -> &[(f64, f64)] {
+    pub(crate) fn rule(&mut self, count: usize) -> &[(f64, f64)] {
         self.rules.entry(count).or_insert_with(|| gauss_legendre(count))
     }
 }

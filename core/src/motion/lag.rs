@@ -1,0 +1,390 @@
+//! Disturbances that lag behind their motion as it changes from one linear regime to the next.
+//!
+//! Behind a change from A to A⁺ with the jump J, disturbances X that lag by τ are those of `e^(A⁺ τ) X⁺` with
+//!
+//! ```text
+//! X⁺ = e^(−A⁺ τ) J e^(A τ) X = X + ∫₀^τ e^(−A⁺ s) (A − A⁺) e^(A s) ds X + e^(−A⁺ τ) (J − 1) e^(A τ) X.
+//! ```
+//!
+//! A change at one point is of rank one, and so are the integrand at every instant and the last term: a few
+//! vectors say what a whole step would say of all columns. So short stretches take no step of their own, and
+//! steps of another motion nearby serve where their ends are a little off.
+
+use super::damping::Damping;
+use super::linear_phase::LinearPhase;
+use super::modal_system::ContactState;
+use super::propagator::Propagators;
+use super::transition::Transition;
+use crate::solve::dot;
+use faer::linalg::matmul::matmul;
+use faer::{Accum, Mat, Par};
+
+/// Modes up to which steps are as cheap.
+const FEW: usize = 8;
+/// Points of which one change may change the regime: more are not worth it.
+const POINTS: usize = 2;
+/// Error of the quadrature, and term of a power series that is none, relative to their sums.
+const ROUNDING: f64 = 1e-18;
+/// Most terms of a series: over a lag they fall at once.
+const TERMS: usize = 60;
+
+/// The equations of a regime in the coordinates of disturbances.
+struct Rates<'a> {
+    of: &'a Transition<'a>,
+    /// Rates of the strains per velocity, and what they do to accelerations: strain, point, factor.
+    moves: Vec<(usize, usize, f64)>,
+    roots: &'a [(usize, usize, f64)],
+    /// Stiffness of points that press.
+    pressing: Vec<(usize, f64)>,
+}
+
+/// A point whose velocity moves strains at other rates.
+struct Change {
+    point: usize,
+    /// Their coordinates, and by how much less.
+    strains: Vec<(usize, f64)>,
+}
+
+impl Transition<'_> {
+    /// Takes disturbances that lag through the change at the end of a phase; `false` where that is not worth
+    /// it, or not simple.
+    pub(super) fn pass_late(
+        &self,
+        phase: &LinearPhase,
+        next: &LinearPhase,
+        lag: f64,
+        total: &mut Mat<f64>,
+        known: &mut Propagators,
+    ) -> bool {
+        let (before, after) = (&phase.regime, &next.regime);
+        let releases = phase.onset.iter().any(|onset| !onset.released.is_empty());
+        if self.weight.len() <= FEW || next.slide.is_some() || releases {
+            return false;
+        }
+        let Some(changed) = self.changes(before, after) else { return false };
+        let roots = self.roots();
+        let [old, new] = [before, after].map(|regime| self.rates(regime, &roots));
+        let (size, modes) = (total.nrows(), self.weight.len());
+        let count = nodes(0.5 * lag.abs() * self.system.rate(0.0));
+        let rule = known.quadrature.rule(count);
+        let times: Vec<f64> = rule.iter().map(|(share, _)| share * lag).collect();
+        let back: Vec<f64> = times.iter().map(|s| -s).collect();
+        let jump = phase.onset.as_ref().and_then(|onset| self.jump_of(onset));
+        let columns = changed.len() * count + usize::from(jump.is_some());
+        let [mut gains, mut forms] = [(); 2].map(|()| Mat::<f64>::zeros(size, columns));
+        for (number, Change { point, strains }) in changed.iter().enumerate() {
+            let place = number * count;
+            let (mut gain, mut form) = (vec![0.0; size], vec![0.0; size]);
+            strains.iter().for_each(|(at, rate)| gain[*at] = *rate);
+            form[modes..2 * modes].copy_from_slice(self.system.contact_shape(*point));
+            new.write_series(gain, &back, false, (&mut gains, place));
+            old.write_series(form, &times, true, (&mut forms, place));
+            for (k, (_, weight)) in rule.iter().enumerate() {
+                gains.col_as_slice_mut(place + k).iter_mut().for_each(|x| *x *= lag * weight);
+            }
+        }
+        if let Some(jump) = &jump {
+            let (mut gain, mut form) = (vec![0.0; size], vec![0.0; size]);
+            jump.gains.iter().for_each(|(at, by)| gain[*at] += by);
+            jump.form.iter().for_each(|(at, by)| form[*at] += by);
+            new.write_series(gain, &[-lag], false, (&mut gains, columns - 1));
+            old.write_series(form, &[lag], true, (&mut forms, columns - 1));
+        }
+        let mut shares = Mat::<f64>::zeros(columns, total.ncols());
+        let forms = forms.transpose();
+        matmul(shares.as_mut(), Accum::Replace, forms, total.as_ref(), 1.0, Par::Seq);
+        matmul(total.as_mut(), Accum::Add, gains.as_ref(), shares.as_ref(), 1.0, Par::Seq);
+        for at in jump.iter().flat_map(|jump| &jump.vanishing) {
+            (0..total.ncols()).for_each(|j| total[(*at, j)] = 0.0);
+        }
+        true
+    }
+
+    /// What changes; nothing if that is much, or if points press otherwise.
+    fn changes(&self, before: &ContactState, after: &ContactState) -> Option<Vec<Change>> {
+        let first = 2 * self.weight.len();
+        let tangents = [before, after].map(|regime| &regime.tangent);
+        let normals = &self.system.normals;
+        if normals.iter().any(|&i| tangents[0][(i, i)] != tangents[1][(i, i)]) {
+            return None;
+        }
+        let mut changed = Vec::new();
+        for body in self.system.bodies() {
+            if before.points[body.points.clone()] == after.points[body.points.clone()] {
+                continue;
+            }
+            for point in body.points.clone() {
+                let column = |number: usize| -> Vec<f64> {
+                    body.points.clone().map(|i| tangents[number][(i, point)]).collect()
+                };
+                let less: Vec<f64> = column(0).iter().zip(column(1)).map(|(a, b)| a - b).collect();
+                if less.iter().any(|less| *less != 0.0) {
+                    let strains = body.strains.clone().map(|strain| first + strain);
+                    let strains = strains.zip(body.elastic.strains(&less)).collect();
+                    changed.push(Change { point, strains });
+                }
+            }
+        }
+        (changed.len() <= POINTS).then_some(changed)
+    }
+
+    /// `g = Σ root f` of all strains.
+    fn roots(&self) -> Vec<(usize, usize, f64)> {
+        let mut roots = Vec::new();
+        for body in self.system.bodies() {
+            for (own, strain) in body.strains.clone().enumerate() {
+                let points = body.points.clone().enumerate();
+                let parts = points.map(|(row, i)| (strain, i, body.elastic.root()[(row, own)]));
+                roots.extend(parts.filter(|(_, _, root)| *root != 0.0));
+            }
+        }
+        roots
+    }
+
+    fn rates<'a>(&'a self, regime: &ContactState, roots: &'a [(usize, usize, f64)]) -> Rates<'a> {
+        let slope = |&i: &usize| (i, regime.tangent[(i, i)]);
+        let pressing = self.system.normals.iter().map(slope).filter(|(_, slope)| *slope != 0.0);
+        Rates { of: self, moves: self.strain_rates(regime), roots, pressing: pressing.collect() }
+    }
+}
+
+impl Rates<'_> {
+    /// Writes `Σ (A t)ⁿ y / n!` at some times t as columns from a place on, or of the transposed matrix.
+    fn write_series(
+        &self,
+        start: Vec<f64>,
+        times: &[f64],
+        across: bool,
+        (out, place): (&mut Mat<f64>, usize),
+    ) {
+        pulp::Arch::new().dispatch(Series { rates: self, start, times, across, out, place });
+    }
+
+    /// `factor A y`.
+    #[inline(always)]
+    fn apply(&self, y: &[f64], factor: f64, out: &mut [f64]) {
+        let (system, weight) = (self.of.system, &self.of.weight);
+        let modes = weight.len();
+        let ((x, rest), (to_x, to_rest)) = (y.split_at(modes), out.split_at_mut(modes));
+        let ((v, g), (to_v, to_g)) = (rest.split_at(modes), to_rest.split_at_mut(modes));
+        let squares = system.omega_squared();
+        for (((to_x, to_v), (x, v)), (w, square)) in
+            to_x.iter_mut().zip(&mut *to_v).zip(x.iter().zip(v)).zip(weight.iter().zip(squares))
+        {
+            (*to_x, *to_v) = (factor * w * v, -factor * square / w * x);
+        }
+        damp(&system.damping, v, -factor, to_v, false);
+        for &(strain, point, root) in self.roots.iter().filter(|(strain, ..)| g[*strain] != 0.0) {
+            add(to_v, -factor * root * g[strain], system.contact_shape(point));
+        }
+        for &(point, slope) in &self.pressing {
+            let shape = system.contact_shape(point);
+            let parts = shape.iter().zip(weight).zip(x);
+            let displaced: f64 = parts.map(|((b, w), x)| b / w * x).sum();
+            add(to_v, -factor * slope * displaced, shape);
+        }
+        to_g.fill(0.0);
+        for &(strain, point, rate) in &self.moves {
+            to_g[strain] += factor * rate * dot(system.contact_shape(point), v);
+        }
+    }
+
+    /// `factor Aᵀ y`.
+    #[inline(always)]
+    fn apply_across(&self, y: &[f64], factor: f64, out: &mut [f64]) {
+        let (system, weight) = (self.of.system, &self.of.weight);
+        let modes = weight.len();
+        let ((x, rest), (to_x, to_rest)) = (y.split_at(modes), out.split_at_mut(modes));
+        let ((v, g), (to_v, to_g)) = (rest.split_at(modes), to_rest.split_at_mut(modes));
+        let squares = system.omega_squared();
+        for (((to_x, to_v), (x, v)), (w, square)) in
+            to_x.iter_mut().zip(&mut *to_v).zip(x.iter().zip(v)).zip(weight.iter().zip(squares))
+        {
+            (*to_x, *to_v) = (-factor * square / w * v, factor * w * x);
+        }
+        damp(&system.damping, v, -factor, to_v, true);
+        for &(strain, point, rate) in self.moves.iter().filter(|(strain, ..)| g[*strain] != 0.0) {
+            add(to_v, factor * rate * g[strain], system.contact_shape(point));
+        }
+        for &(point, slope) in &self.pressing {
+            let shape = system.contact_shape(point);
+            let by = -factor * slope * dot(shape, v);
+            let parts = to_x.iter_mut().zip(shape.iter().zip(weight));
+            parts.for_each(|(to, (b, w))| *to += by * b / w);
+        }
+        to_g.fill(0.0);
+        for &(strain, point, root) in self.roots {
+            to_g[strain] -= factor * root * dot(system.contact_shape(point), v);
+        }
+    }
+}
+
+/// Adds `factor C v`, or of the transposed matrix.
+#[inline(always)]
+fn damp(damping: &Damping, v: &[f64], factor: f64, out: &mut [f64], across: bool) {
+    match damping {
+        Damping::Diagonal(own) => {
+            let parts = out.iter_mut().zip(own).zip(v);
+            parts.for_each(|((out, c), v)| *out += factor * c * v);
+        }
+        Damping::Full(own) if across => {
+            let columns = out.iter_mut().enumerate();
+            columns.for_each(|(j, out)| *out += factor * dot(own.col_as_slice(j), v));
+        }
+        Damping::Full(own) => {
+            let columns = v.iter().enumerate();
+            columns.for_each(|(j, v)| add(out, factor * v, own.col_as_slice(j)));
+        }
+    }
+}
+
+#[inline(always)]
+fn add(out: &mut [f64], factor: f64, row: &[f64]) {
+    out.iter_mut().zip(row).for_each(|(out, row)| *out += factor * row);
+}
+
+/// A power series at some times. A closure would be no part of what vector instructions are chosen for.
+struct Series<'a> {
+    rates: &'a Rates<'a>,
+    start: Vec<f64>,
+    times: &'a [f64],
+    across: bool,
+    out: &'a mut Mat<f64>,
+    place: usize,
+}
+
+impl pulp::NullaryFnOnce for Series<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self { rates, start: mut term, times, across, out, place } = self;
+        let longest = times.iter().fold(0.0_f64, |most, t| most.max(t.abs()));
+        let shares: Vec<f64> = times.iter().map(|t| t / longest).collect();
+        let mut powers = vec![1.0; times.len()];
+        let mut next = vec![0.0; term.len()];
+        let mut most = 0.0_f64;
+        for order in 1..TERMS {
+            let size = dot(&term, &term).sqrt();
+            most = most.max(size);
+            if size <= ROUNDING * most {
+                break;
+            }
+            for (k, (power, share)) in powers.iter_mut().zip(&shares).enumerate() {
+                add(out.col_as_slice_mut(place + k), *power, &term);
+                *power *= share;
+            }
+            let factor = longest / order as f64;
+            if across {
+                rates.apply_across(&term, factor, &mut next);
+            } else {
+                rates.apply(&term, factor, &mut next);
+            }
+            std::mem::swap(&mut term, &mut next);
+        }
+    }
+}
+
+/// Nodes over which the quadrature of waves that turn by 4 x has no error but rounding, `x^2m / (2m)!`.
+fn nodes(x: f64) -> usize {
+    let (mut count, mut error) = (0, 1.0);
+    while error > ROUNDING {
+        count += 1;
+        error *= x * x / ((2 * count) * (2 * count - 1)) as f64;
+    }
+    count
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::{Closure, ContactLaw, Coulomb, Jenkins};
+    use crate::model::{Contact, Model};
+    use crate::motion::{Flow, LoopDisturbance, ModalSystem, State};
+    use crate::structure::{HarmonicLoad, Structure};
+    use faer::c64;
+    use std::f64::consts::TAU;
+
+    const OMEGA: f64 = 1.3;
+
+    /// A chain of twelve masses on stiff springs, on elements of which some slip, and on a planar contact.
+    fn model(coupled: bool) -> Model {
+        let size = 12;
+        let stiffness = Mat::from_fn(size, size, |i, j| match i.abs_diff(j) {
+            0 => 900.0 + 70.0 * i as f64,
+            1 => -400.0,
+            _ => 0.0,
+        });
+        let damping = Mat::from_fn(size, size, |i, j| {
+            let own = 0.3 * f64::from(u8::from(i == j));
+            own + if coupled && i.abs_diff(j) < 2 { 0.02 * (i + 2 * j) as f64 } else { 0.0 }
+        });
+        let mass = Mat::<f64>::identity(size, size);
+        let structure = Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref());
+        let at = |places: &[usize]| {
+            Mat::from_fn(places.len(), size, |i, j| f64::from(u8::from(places[i] == j)))
+        };
+        let mut contacts: Vec<Contact> = (0..8)
+            .map(|i| {
+                let law: Box<dyn ContactLaw> =
+                    Box::new(Jenkins::new(150.0, 1.0 + 0.7 * i as f64).unwrap());
+                Contact { law, rows: at(&[i]) }
+            })
+            .collect();
+        let pad = Coulomb::new(1, 0.4, 120.0, Some(150.0), Closure::Preload(9.0)).unwrap();
+        contacts.push(Contact { law: Box::new(pad), rows: at(&[9, 10]) });
+        let amplitude = (0..size).map(|i| c64::new(12.0 + i as f64, 0.0)).collect();
+        Model::new(structure.unwrap(), contacts, vec![HarmonicLoad { harmonic: 1, amplitude }])
+            .unwrap()
+    }
+
+    /// The phases of a period from a state, and the forces at its start.
+    fn phases(system: &ModalSystem, shift: f64) -> (Vec<LinearPhase>, Vec<f64>) {
+        let mut state = State::rest(system);
+        let mut flow = Flow::new(system, OMEGA);
+        flow.run(&mut state, 3.0 * TAU / OMEGA, &mut |_| {}).unwrap();
+        state.velocity.iter_mut().for_each(|v| *v += shift);
+        let (force, mut phases) = (state.force.clone(), Vec::new());
+        let until = state.time + TAU / OMEGA;
+        flow.run(&mut state, until, &mut |passage| {
+            LinearPhase::record(&mut phases, system, &passage);
+        })
+        .unwrap();
+        (phases, force)
+    }
+
+    /// The same as every stretch by itself, in small steps: of one motion, and of another one by the exponentials
+    /// of the first.
+    #[test]
+    fn disturbances_that_lag_come_to_the_same() {
+        for coupled in [false, true] {
+            let model = model(coupled);
+            let system = ModalSystem::new(&model).unwrap();
+            let own = Transition::new(&system, OMEGA);
+            let mut known = Propagators::default();
+            for shift in [0.0, 1e-3] {
+                let (phases, force) = phases(&system, shift);
+                assert!(phases.len() > 20, "{}", phases.len());
+                let held: Vec<_> = phases[0].regime.points.clone();
+                let mut by_steps = own.start(&phases, &held, &force);
+                for phase in &phases {
+                    let steps = (phase.duration * system.rate(0.0) / 0.3).ceil().max(1.0);
+                    for _ in 0..steps as usize {
+                        own.catch_up(&phase.regime, phase.duration / steps, &mut by_steps);
+                    }
+                    if let Some(onset) = &phase.onset {
+                        own.jump(onset, &mut by_steps);
+                    }
+                }
+                let none = &mut LoopDisturbance::default();
+                let found = own.along(&phases, &held, &force, none, &mut known);
+                let error = (&found - &by_steps).norm_max() / by_steps.norm_max();
+                assert!(error < 1e-12, "{coupled} {shift} {error:e}");
+                let zeros = |matrix: &Mat<f64>| {
+                    (0..matrix.nrows()).filter(|i| matrix.row(*i).norm_max() == 0.0).count()
+                };
+                assert_eq!(zeros(&found), zeros(&by_steps));
+            }
+        }
+    }
+}
