@@ -378,3 +378,23 @@ def test_ctrl_c_keeps_what_is_done(mass):
     with pytest.raises(ss.Interrupted) as caught:
         ss.limit_cycles(beam, negative, method="exact", progress=stop)
     assert caught.value.result.interrupted
+
+
+def test_sliders_in_parallel_are_contacts_of_their_own() -> None:
+    """Sliders of unequal limits: all stick below the onset of the first, and dissipate nothing."""
+    body = ss.Structure([[1.0]], [[3e4]], ss.ModalDamping(0.003), ["x"])
+    limits, softer = (0.3, 1.0), ss.Rayleigh(mass=-2.0)
+    together = ss.ParallelJenkins("x", stiffness=[2e3, 2e3], slip_forces=limits)
+    apart = [ss.Jenkins("x", stiffness=2e3, slip_force=limit) for limit in limits]
+    found = [
+        ss.limit_cycles(ss.Model(body, contacts), softer, ratio=[0.7, 1.0], harmonics=5)
+        for contacts in ([together], apart)
+    ]
+    for one in found:
+        assert one.branch.tolist() == 2 * ["sticking"] + 2 * ["slipping"]
+        assert one.stability.tolist() == 2 * ["stable"] + 2 * ["unstable"]
+    np.testing.assert_allclose(found[0].amplitude("x"), found[1].amplitude("x"), rtol=1e-9)
+    start = ss.destabilised(ss.Model(body, [together]), softer, 1.0)
+    settled = ss.classify(start, {"x": 1e-4})
+    assert settled.motion == "settled"
+    assert settled.amplitude("x") == pytest.approx(found[0].amplitude("x")[1], rel=1e-3)

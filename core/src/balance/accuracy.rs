@@ -48,6 +48,8 @@ const ALLOWED: f64 = 3.0;
 const ALLOWED_OF_RING: f64 = 1.6;
 /// The same of many contacts, whose products with the modes are reckoned as they are.
 const ALLOWED_OF_MANY: f64 = 0.25;
+/// The same of many nodes that slip or open, of which nearly all is reckoned.
+const ALLOWED_OF_NODES: f64 = 0.8;
 
 /// Share of the defect at a contact that a step may leave: where it leaves more, the tangent was not that
 /// of the way.
@@ -98,15 +100,18 @@ impl Extension {
         // The compliances of the kept harmonics are known; all are recovered, after each step.
         let known = effort.orders(highest, [1.0, 0.0]);
         let is_ring = model.compliance().ring().is_some();
-        let share = match (is_ring, effort.is_of_many(highest)) {
-            (true, _) => ALLOWED_OF_RING,
-            (_, true) => ALLOWED_OF_MANY,
-            _ => ALLOWED,
-        };
+        let of_many = effort.is_of_many(highest);
+        let coupled = effort.coupled_points() > 1.0;
         let steps = OF_SOLUTION * effort.step(highest);
         let orders = effort.orders(highest, [1.0, 1.0]);
-        let allowed = share * steps + (share * orders).min(orders.max(steps));
         let affordable = |order: &usize| {
+            let share = match (is_ring, coupled && effort.is_of_many(*order), of_many) {
+                (true, ..) => ALLOWED_OF_RING,
+                (_, true, _) => ALLOWED_OF_NODES,
+                (.., true) => ALLOWED_OF_MANY,
+                _ => ALLOWED,
+            };
+            let allowed = share * steps + (share * orders).min(orders.max(steps));
             effort.orders(*order, [1.0, 2.0]) - known + 2.0 * effort.step(*order) <= allowed
         };
         let candidates = (highest + least..=wanted).step_by(least);
@@ -167,6 +172,18 @@ impl Effort<'_> {
         count as f64 * (evaluations * receptance + recoveries * displacement)
     }
 
+    /// Points of a law that couples several, in the mean over those of all such laws; 1 if there are none.
+    fn coupled_points(&self) -> f64 {
+        let sizes = || self.model.laws().iter().map(|law| law.displacements() as f64);
+        let coupled = || sizes().filter(|size| *size > 1.0);
+        let points: f64 = coupled().sum();
+        if points > 0.0 {
+            coupled().map(|size| size * size).sum::<f64>() / points
+        } else {
+            1.0
+        }
+    }
+
     /// Whether receptances are not formed.
     fn is_of_many(&self, highest: usize) -> bool {
         suits(self.model.compliance(), &Harmonics::new(highest, self.half_wave))
@@ -184,7 +201,9 @@ impl Effort<'_> {
             + slipping * (600.0 + 80.0 * slots + 2.5 * slots.powi(2));
         let linear = match compliance.ring() {
             Some(ring) => RingNewton::effort(ring, slots, slipping),
-            None if self.is_of_many(highest) => of_step(compliance, slots, slipping),
+            None if self.is_of_many(highest) => {
+                of_step(compliance, slots, slipping, self.coupled_points())
+            }
             None => 1e3 + 100.0 * slipping * slots + 0.06 * (slipping * slots).powi(3),
         };
         laws + linear

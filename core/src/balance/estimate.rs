@@ -12,12 +12,18 @@ use crate::solve::System as _;
 use crate::Error;
 
 impl ForcedBalance<'_> {
-    /// Number of points that slip, or whose law may depart from a spring without slip.
+    /// Number of points that slip, with those beside them that their law couples to them; a law that may
+    /// depart from a spring without slip counts as one.
     pub(super) fn nonlinear_points(&self, point: &Point) -> usize {
         let laws = self.model.laws().iter().zip(self.model.points());
         let counted = laws.map(|(law, points)| {
             let own = &point.contacts[points.clone()];
-            own.iter().filter(|one| one.slip_fraction > 0.0 || !law.is_monotone()).count()
+            let slip = own.iter().filter(|one| one.slip_fraction > 0.0).count();
+            match (slip, law.is_monotone()) {
+                (slip, true) => slip,
+                (0, false) => 1,
+                (_, false) => own.len(),
+            }
         });
         counted.sum()
     }

@@ -9,8 +9,13 @@ const LARGEST_FORMED: usize = 2000;
 const PRODUCTS: f64 = 60.0;
 /// Of them a Newton step takes these, with the contacts that slip, …
 const PRODUCTS_OF_STEP: f64 = 8.0;
-/// … at so much an operation \[ns\].
+/// … or as many as these if laws couple several points, with all that is orthogonalised: 100 to 280 where
+/// nodes slip or open, …
+const PRODUCTS_OF_COUPLED: f64 = 800.0;
+/// … at so much an operation, …
 const PER_OPERATION: f64 = 0.1;
+/// … and so much an entry of their tangents, which come from memory \[ns\].
+const PER_ENTRY: f64 = 0.8;
 /// Factorisations that it takes, and the share of the contacts that slip, as a rule.
 const FACTORISATIONS: f64 = 4.0;
 const SLIPPING: f64 = 0.5;
@@ -33,10 +38,16 @@ pub(super) fn is_large(compliance: &dyn Compliance, harmonics: &Harmonics) -> bo
     suits(compliance, harmonics) && compliance.contacts() * harmonics.slots() > LARGEST_FORMED
 }
 
-/// About the time of a Newton step of some contacts that slip, on a common processor \[ns\].
-pub(super) fn of_step(compliance: &dyn Compliance, slots: f64, slipping: f64) -> f64 {
+/// About the time of a Newton step of some contacts that slip, on a common processor \[ns\]; a law couples so
+/// many of them.
+pub(super) fn of_step(compliance: &dyn Compliance, slots: f64, slipping: f64, coupled: f64) -> f64 {
     let Some(modes) = compliance.contact_modes() else { return 0.0 };
     let contacts = compliance.contacts() as f64;
-    PER_OPERATION
-        * (PRODUCTS_OF_STEP * modes.work(slipping, slots) + 2.0 * modes.work(contacts, slots))
+    let whole = PER_OPERATION * 2.0 * modes.work(contacts, slots);
+    let product = PER_OPERATION * modes.work(slipping, slots);
+    if coupled > 1.0 {
+        let tangents = PER_ENTRY * slipping * coupled * slots * slots;
+        return whole + PRODUCTS_OF_COUPLED * (product + tangents);
+    }
+    whole + PRODUCTS_OF_STEP * product
 }

@@ -49,7 +49,7 @@ impl Price<'_> {
                 ring.sectors() as f64 * (inside + 20.0 * cube(layout.ports() - own + 2 * between))
             }
             None if suits(self.model.compliance(), &Harmonics::new(order, self.half_wave)) => {
-                of_step(self.model.compliance(), slots, self.slipping as f64) / IN_BLOCKS
+                of_step(self.model.compliance(), slots, self.slipping as f64, 1.0) / IN_BLOCKS
             }
             None => 2.0 / 3.0 * cube(self.slipping),
         };
