@@ -201,10 +201,12 @@ impl ForcedBalance<'_> {
     /// change. Springs without stiffness at rest have no such loss; their path is that of the load.
     fn follow_paths(&self, equations: &mut Condensed<'_>, x: &mut Vec<f64>, report: &mut Report) {
         let last = if self.is_monotone() { Path::Loss } else { Path::Load };
+        let price = self.price(self.model.compliance().contacts());
+        let budget = price.budget_of_homotopy(equations.harmonics().highest());
         for path in [Path::Stiffness, last] {
             let mut along = x.clone();
             equations.choose(path);
-            let followed = homotopy(equations, &mut along, self.settings.newton);
+            let followed = homotopy(equations, &mut along, self.settings.newton, budget);
             let followed = if_bounded(followed, &along, equations);
             report.iterations += followed.iterations;
             if !has_failed(&followed) {

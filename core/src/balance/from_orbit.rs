@@ -58,7 +58,7 @@ impl ForcedBalance<'_> {
         orbits.orbit(omega, order)
     }
 
-    fn price(&self, slipping: usize) -> Price<'_> {
+    pub(super) fn price(&self, slipping: usize) -> Price<'_> {
         let lowest = self.control.lowest_order();
         Price { model: &self.model, half_wave: self.half_wave(), slipping, lowest }
     }

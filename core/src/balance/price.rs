@@ -25,6 +25,11 @@ const MULTIPLE: f64 = 64.0;
 const HOMOTOPY: f64 = 200.0;
 /// … or belong to less than twice the harmonics of the lowest level.
 const TWICE: f64 = 8.0;
+/// Operations of one that is asked for, about ten seconds; its Newton iterations are at least and at most so
+/// many.
+const LONG: f64 = 5e10;
+const FEWEST: f64 = 500.0;
+const MOST: f64 = 5000.0;
 
 /// Price of the balance equations of a model with some slipping points.
 pub(super) struct Price<'a> {
@@ -60,6 +65,11 @@ impl Price<'_> {
     /// Operations that a point may ask for.
     pub(super) fn affordable(&self) -> f64 {
         AFFORDABLE.max(MULTIPLE * self.of(self.lowest))
+    }
+
+    /// Newton iterations that a homotopy with harmonics up to `order` may take.
+    pub(super) fn budget_of_homotopy(&self, order: usize) -> usize {
+        (LONG * ITERATIONS / self.of(order)).clamp(FEWEST, MOST) as usize
     }
 
     /// Whether a homotopy to harmonics up to `order` is affordable.

@@ -24,12 +24,14 @@ const FIRST_SCALES: [f64; 4] = [1e-1, 1e-2, 1e-3, 1e-5];
 /// First and shortest step of the logarithm of the parameter.
 const FIRST_STEP: f64 = 0.5;
 const SHORTEST_STEP: f64 = 1e-4;
-/// Newton iterations that a whole path may take.
-const BUDGET: usize = 5000;
-
 /// Finds an easy solution and follows it to the problem itself, with steps that shrink on failure
-/// and grow on success. `x` is a start and, on return, the solution.
-pub fn homotopy(system: &mut impl Parametrised, x: &mut [f64], settings: NewtonSettings) -> Report {
+/// and grow on success, in up to `budget` Newton iterations. `x` is a start and, on return, the solution.
+pub fn homotopy(
+    system: &mut impl Parametrised,
+    x: &mut [f64],
+    settings: NewtonSettings,
+    budget: usize,
+) -> Report {
     let mut iterations = 0;
     let mut trial = x.to_vec();
     let mut easy = None;
@@ -55,7 +57,7 @@ pub fn homotopy(system: &mut impl Parametrised, x: &mut [f64], settings: NewtonS
     };
     x.copy_from_slice(&trial);
     let mut step = FIRST_STEP;
-    while logarithm < 0.0 && step >= SHORTEST_STEP && iterations < BUDGET {
+    while logarithm < 0.0 && step >= SHORTEST_STEP && iterations < budget {
         let next = (logarithm + step).min(0.0);
         trial.copy_from_slice(x);
         system.predict((next - logarithm).exp(), &mut trial);
