@@ -7,6 +7,7 @@ mod flutter_model;
 mod modal_basis;
 mod resonances;
 mod slipping;
+mod traction;
 mod unbounded;
 mod variation;
 

@@ -7,7 +7,7 @@
 
 use super::body::Body;
 use super::contact_states::{partial_sets, slip_sets, State};
-use super::unbounded::most_of_a_traction;
+use super::traction::most_of_a_traction;
 use super::Model;
 use crate::structure::Poles;
 use crate::Error;

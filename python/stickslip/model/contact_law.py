@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Iterator, Sequence
 from copy import copy
-from typing import Any, ClassVar, NamedTuple, NoReturn, Self
+from typing import Any, ClassVar, NamedTuple, NoReturn, Self, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -25,6 +25,8 @@ _ROUNDED = 16.0 * float(np.finfo(np.float64).eps)
 """Rounding of a force or a state, relative to the largest: what saturates has no other slope."""
 _LAST = 1 << 12
 """Calls up to which tangents are compared, at every power of two."""
+_Answer: TypeAlias = tuple[Matrix, Matrix, list[Matrix]]
+"""Forces, new states and tangents."""
 
 
 class Tangents(NamedTuple):
@@ -323,13 +325,7 @@ class ContactLaw(Contact):
 
     # ------------------------------------------------------------- tangents against differences
 
-    def _compare(
-        self,
-        before: Matrix,
-        after: Matrix,
-        state: Matrix,
-        answer: tuple[Matrix, Matrix, list[Matrix]],
-    ) -> None:
+    def _compare(self, before: Matrix, after: Matrix, state: Matrix, answer: _Answer) -> None:
         """Refuse tangents that are no derivative of the step."""
         force, new, tangents = answer
         by_state, by_before, by_after, force_by_state, force_by_after = tangents

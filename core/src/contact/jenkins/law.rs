@@ -192,13 +192,7 @@ impl ContactLaw for Jenkins {
             jacobian.by_before[i] = -jacobian.by_after[i];
             jacobian.force_by_state[i] = 1.0;
         }
-        let slips = self.sliders.iter().zip(&sticks).map(|(slider, sticks)| (slider, 1.0 - sticks));
-        let total = self.total_stiffness();
-        jacobian.slipping[0] = if count == 1 || total == 0.0 {
-            1.0 - sticks[0]
-        } else {
-            slips.map(|(slider, slips)| slider.stiffness / total * slips).sum()
-        };
+        jacobian.slipping[0] = self.weighted(|i| 1.0 - sticks[i]);
     }
 
     /// Sliders of one contact are moved together: of several that stick the stiffest tells how far.
