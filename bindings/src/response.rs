@@ -8,7 +8,7 @@ use crate::watch::{given_up, watched};
 use numpy::{Complex64, PyArray1};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use std::collections::HashMap;
+use std::collections::{HashMap, VecDeque};
 use std::mem::take;
 use std::sync::Arc;
 use stickslip_core::balance::{
@@ -55,11 +55,15 @@ pub fn keeping<K: Send + Sync + 'static, T: Send + 'static>(
     rest(points).ok_or_else(given_up)
 }
 
-/// Brings points that were kept as they were found into the order of the frequencies.
+/// Brings points that were kept as they were found into the order of the frequencies; those of one frequency
+/// stay in theirs.
 pub fn in_order<T>(points: &mut [Arc<T>], order: &[f64], omega: impl Fn(&T) -> f64) {
-    let places = order.iter().enumerate().rev().map(|(place, own)| (own.to_bits(), place));
-    let places: HashMap<u64, usize> = places.collect();
-    points.sort_by_key(|point| places.get(&omega(point).to_bits()).copied());
+    let mut places: HashMap<u64, VecDeque<usize>> = HashMap::new();
+    for (place, own) in order.iter().enumerate() {
+        places.entry(own.to_bits()).or_default().push_back(place);
+    }
+    let mut next = |point: &T| places.get_mut(&omega(point).to_bits())?.pop_front();
+    points.sort_by_cached_key(|point| next(point));
 }
 
 /// What is asked of a balance.

@@ -17,7 +17,7 @@ import numpy as np
 
 from stickslip.checks import listed, unknown
 from stickslip.errors import CallError, ModelError
-from stickslip.misuse import FOREIGN, flags, misuse, require_flag
+from stickslip.misuse import FOREIGN, flags, misuse, passes_by_caller, require_flag
 
 _PACKAGE = __name__.partition(".")[0]
 _WRAPPED = "__stickslip_checked__"
@@ -84,7 +84,7 @@ def _checked_function(function: FunctionType) -> Callable[..., Any]:
             reason = None if refused else _reason(function, args, keywords, error)
             if reason is None:
                 raise
-            raise reason from None
+            raise reason from (None if isinstance(reason, CallError) else error)
         if type(result) not in _done:
             _check_class(type(result))
         return result
@@ -105,7 +105,7 @@ def _reason(
     if isinstance(error, TypeError) and trace is not None and trace.tb_next is None:
         message = misfit(function, args, keywords)
         return None if message is None else CallError(message)
-    return misuse(function, args, keywords)
+    return None if passes_by_caller(trace) else misuse(function, args, keywords)
 
 
 def _has_mask(value: object, depth: int = 0) -> bool:

@@ -7,7 +7,7 @@ import os
 import re
 import stat
 import unicodedata
-from collections.abc import Collection, Generator, Iterable, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import suppress
 from importlib import import_module
 from numbers import Integral, Real
@@ -143,10 +143,10 @@ def members(value: Iterable[_Member], entry: str, remedy: str) -> tuple[_Member,
 def as_list(value: object) -> tuple[Any, ...] | None:
     """Return the members of anything but text that can be gone through; None if it cannot.
 
-    The array without dimensions is an `Iterable`, and fails only when it is.
+    What an iterator raises on the way is the caller's own. An array without dimensions and a sparse
+    matrix have iterators that fail.
     """
-    if isinstance(value, Generator):
-        # What it raises is the caller's own.
+    if isinstance(value, Iterator):
         return tuple(value)
     try:
         return None if isinstance(value, str | bytes) else tuple(value)  # type: ignore[arg-type]
@@ -167,8 +167,9 @@ def whole_array(value: object, entry: str, remedy: str) -> NDArray[np.int64]:
     """Return an array of whole numbers, of any shape, as a copy."""
     with suppress(TypeError, ValueError, OverflowError):
         array = np.asarray(value)
-        # The empty list is one of real numbers.
-        if array.dtype.kind in "iu" or not array.size:
+        # The empty list is one of real numbers, and tables of numbers read from text are.
+        whole = array.dtype.kind == "f" and bool((array == np.rint(array)).all())
+        if array.dtype.kind in "iu" or whole:
             return array.astype(np.int64)
     raise ModelError(f"{entry}: {brief(value)} holds no whole numbers; give {remedy}")
 

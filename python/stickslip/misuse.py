@@ -10,11 +10,13 @@ from __future__ import annotations
 import ast
 import inspect
 import sys
+import sysconfig
 from collections.abc import Callable, Iterable, Mapping
 from functools import cache
 from itertools import islice
 from numbers import Integral
 from os import PathLike
+from types import TracebackType
 from typing import Any
 
 import numpy as np
@@ -43,6 +45,8 @@ _WORDS = {
     **dict.fromkeys(_ARRAYS, "numbers in a list or an array"),
     "Callable": "a function",
 }
+_LIBRARIES = (*{sysconfig.get_path(one) for one in ("stdlib", "purelib", "platlib")}, "<")
+"""Where code lies that is not the caller's; what is made while it runs has a name in brackets."""
 _Scope = Callable[[str], Any]
 """What a name of an annotation stands for."""
 
@@ -77,6 +81,21 @@ def misuse(
         if isinstance(value, str) and parameter.annotation in ("float", "float | None"):
             texts.append(error)
     return texts[0] if texts else None
+
+
+def passes_by_caller(trace: TracebackType | None) -> bool:
+    """Return whether an error comes from a function that was given.
+
+    Methods such as `__getitem__` are no function of their own: what fails in them is their object.
+    """
+    while trace is not None:
+        frame, trace = trace.tb_frame, trace.tb_next
+        name = str(frame.f_globals.get("__name__", "")).partition(".")[0]
+        code = frame.f_code
+        foreign = name != _PACKAGE and not code.co_filename.startswith(_LIBRARIES)
+        if foreign and not code.co_name.startswith("__"):
+            return True
+    return False
 
 
 def flags(function: Callable[..., Any]) -> tuple[tuple[int, str], ...]:
@@ -117,6 +136,8 @@ def _fits(value: Any, node: ast.expr, scope: _Scope) -> bool | None:
 
 def _is(value: Any, node: ast.expr, scope: _Scope) -> bool | None:
     name, parts = _parted(node)
+    if name in ("Any", "object"):
+        return None
     if name == "None":
         return value is None
     if name == "bool":

@@ -221,3 +221,19 @@ def test_ctrl_c_keeps_the_cells_that_are_done():
     assert whole.amplitude[0, 0] == kept.amplitude[0, 0]
     assert not whole.interrupted
     assert shares[-1] == 1.0
+
+
+def test_an_undamped_mode_that_no_damper_sees_ends_its_cells_alone() -> None:
+    """Equal blades moving together, at a frequency that the grid meets."""
+    blades = ss.Structure(np.eye(2), np.eye(2), dofs=["x", "y"])
+
+    def build(limit: float, damping: float) -> ss.Model:
+        body = ss.Structure(blades.mass, blades.stiffness, damping * np.eye(2), blades.dofs)
+        contact = ss.Jenkins("x", "y", stiffness=1.0, slip_force=limit)
+        return ss.Model(body, [contact], [ss.Force("x", 0.3)])
+
+    found = ss.design_map(
+        build, {"limit": [1.0, 2.0], "damping": [0.0, 0.02]}, dof="x", omega=(0.9, 1.1)
+    )
+    assert [[str(one) for one in row] for row in found.status] == 2 * [["singular", "converged"]]
+    assert (np.isnan(found.amplitude) == [[True, False]]).all()

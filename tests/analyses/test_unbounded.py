@@ -127,3 +127,18 @@ def test_a_plane_moved_far_beyond_its_slip_ends():
     """Exactly at the resonance: panels of the slip equation had filled the memory."""
     response = ss.forced_response(undamped([BOUNDED["coulomb in a plane"](2.0)]), [100.0], 3)
     assert not response.converged[0]
+
+
+@pytest.mark.parametrize(("force", "bounded"), [(0.8, True), (1.2, True), (1.3, False)])
+def test_friction_opposes_a_motion_by_square_waves_of_its_own_harmonic(force, bounded) -> None:
+    """The limit of 1 N at any harmonic by 4/pi, however small the load is at the first."""
+    body = ss.Structure([[1.0]], [[1.0]], dofs=["a"])
+    loads = [ss.Force("a", 1e-3), ss.Force("a", force, harmonic=3)]
+    model = ss.Model(body, [ss.Jenkins("a", stiffness=1.0, slip_force=1.0)], loads)
+    curve = ss.forced_response(model, np.linspace(0.3, 0.36, 61), 9)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        height = curve.peak("a").amplitude
+    assert np.isfinite(height) == bounded
+    if bounded:
+        assert height >= curve.amplitude("a").max()

@@ -253,3 +253,29 @@ def test_what_a_function_of_the_user_raises_stays_what_it_is():
 
     with pytest.raises(KeyError, match="mine"):
         ss.Model(BEAM.structure, broken())
+
+
+def test_what_comes_from_the_caller_is_never_put_down_to_an_argument() -> None:
+    def build(**_: float) -> ss.Model:
+        raise KeyError("my own")
+
+    with pytest.raises(KeyError, match="my own"):
+        ss.design_map(
+            build, {"mass": [1.0], "angle": [1.0]}, dof="tip", omega=(20.0, 350.0), tolerance="1 %"
+        )
+    with pytest.raises(KeyError, match="mine"):
+        ss.forced_response(snecma_beam(), [170.0, 180.0], 3, observe=map({}.__getitem__, ["mine"]))
+
+
+def test_whole_numbers_may_be_those_of_a_table() -> None:
+    nodes = np.eye(3)
+    mesh = ss.Mesh(nodes, node_sets={"A": np.array([0.0, 1.0])})
+    assert mesh.node_sets["A"].tolist() == [0, 1]
+    with pytest.raises(ss.ModelError, match="holds no whole numbers"):
+        ss.Mesh(nodes, node_sets={"A": np.array([0.5, 1.0])})
+
+
+@pytest.mark.parametrize("given", ["0.02", ["1 %"], [0.01, None]])
+def test_deviations_of_frequencies_are_numbers(given) -> None:
+    with pytest.raises(ss.ModelError, match=r"holds no real numbers; give \(f - f0\) / f0"):
+        ss.frequency_pattern(given)

@@ -79,7 +79,7 @@ pub fn peak_map(
                 let proceed = |_| !stop.load(Ordering::Relaxed);
                 let search = Search { cell, grid, progress: &proceed };
                 // Nobody listens any more once the map has ended.
-                let _ = sender.send((index, search.peak()));
+                let _ = sender.send((index, or_singular(search.peak())));
             });
         }
         drop(sender);
@@ -99,6 +99,14 @@ pub fn peak_map(
         }
     });
     found.into_iter().collect()
+}
+
+/// What was found of a cell; an undamped resonance is no reason to give up the others.
+fn or_singular(found: Result<CellPeak, Error>) -> Result<CellPeak, Error> {
+    match found {
+        Err(Error::UndampedResonance { .. }) => Ok(CellPeak::missing(0, PointStatus::Singular)),
+        found => found,
+    }
 }
 
 /// The search for the peak of a cell.

@@ -23,14 +23,13 @@ impl Model {
             return Ok(None);
         }
         let forced = self.compliance.forced_harmonics();
-        let lowest = forced.iter().copied().find(|&k| k > 0).unwrap_or(1);
         let limits: Vec<f64> = self.slip_limits().collect();
         let slips: Vec<bool> = limits.iter().map(|limit| limit.is_finite()).collect();
         let planes: Vec<[usize; 2]> = self.planes().collect();
         let mut found: Option<f64> = None;
         for harmonic in forced.into_iter().filter(|&k| k > 0) {
             let state = self.state(self.diameter(harmonic), &slips, 0.0)?;
-            let (load, share) = (self.load(harmonic), square_wave(lowest, harmonic));
+            let (load, share) = (self.load(harmonic), square_wave(1, 1));
             let bearing =
                 Bearing { load: &load, limits: &limits, stiffness: &[], planes: &planes, share };
             for (j, pole) in state.poles.values.iter().enumerate() {
@@ -57,8 +56,10 @@ impl Model {
         decay: f64,
     ) -> bool {
         let highest = state.poles.values.iter().map(|s| s.norm()).fold(0.0, f64::max);
+        // A motion that grows without a bound makes square waves of its own harmonic.
+        let whole = Bearing { share: square_wave(1, 1), ..*bearing };
         decay <= UNDAMPED * highest
-            && bearing.driven(state, pole) > bearing.friction(state, pole)
+            && whole.driven(state, pole) > whole.friction(state, pole)
             && !self.grows(state, pole)
     }
 

@@ -109,9 +109,9 @@ impl Function for Driven {
     }
 }
 
-/// Exponential of a matrix with its square and its products `power`: its Taylor polynomial of degree 8 or 18 in three or five
-/// products (Bader, Blanes and Casas 2019), scaled and squared. Powers of the matrix tell its size more
-/// closely than it does (Al-Mohy and Higham 2009).
+/// Exponential of a matrix, given its square; `power` multiplies a power of it by the matrix itself. It is its
+/// Taylor polynomial of degree 8 or 18 in three or five products (Bader, Blanes and Casas 2019), scaled and
+/// squared. Powers of the matrix tell its size more closely than it does (Al-Mohy and Higham 2009).
 pub(super) fn exponential<F: Function>(a: &F, second: F, power: impl Fn(&F) -> F) -> F {
     if a.norm() <= REACH[0] {
         return of_small(a, &second);

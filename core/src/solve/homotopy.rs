@@ -24,6 +24,7 @@ const FIRST_SCALES: [f64; 4] = [1e-1, 1e-2, 1e-3, 1e-5];
 /// First and shortest step of the logarithm of the parameter.
 const FIRST_STEP: f64 = 0.5;
 const SHORTEST_STEP: f64 = 1e-4;
+
 /// Finds an easy solution and follows it to the problem itself, with steps that shrink on failure
 /// and grow on success, in up to `budget` Newton iterations. `x` is a start and, on return, the solution.
 pub fn homotopy(

@@ -7,7 +7,7 @@ from typing import Literal, TypeAlias, get_args
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.checks import brief, choice, whole_number
+from stickslip.checks import choice, real_array, whole_number
 from stickslip.errors import ModelError
 from stickslip.units import physical_number
 
@@ -75,10 +75,7 @@ def frequency_pattern(deviations: ArrayLike) -> NDArray[np.float64]:
 
 def stiffness_of(deviations: ArrayLike, entry: str) -> NDArray[np.float64]:
     """Return the deviations of the stiffness that belong to those of frequencies."""
-    try:
-        relative = np.asarray(deviations, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise ModelError(f"{entry}: {brief(deviations)} holds no real numbers") from None
+    relative = real_array(deviations, entry, "(f - f0) / f0, 0.02 for 2 %")
     wrong = np.argwhere(~(np.abs(relative) < 1.0))
     if wrong.size:
         place = "".join(f"[{one}]" for one in wrong[0])
