@@ -1,6 +1,7 @@
 //! Points solved by products with the modes are those of dense receptances.
 #![allow(clippy::unwrap_used)]
 
+use super::accuracy::Extension;
 use super::condensed::Condensed;
 use super::linear::Linear;
 use super::solution::PointStatus;
@@ -256,4 +257,15 @@ fn a_direction_ends_with_the_analysis() {
     assert_eq!(report.outcome, Outcome::Interrupted);
     // Once before the first step, then product by product.
     assert!(asked.get() <= 7 && report.iterations == 1, "{} {report:?}", asked.get());
+}
+
+/// A law that couples the points of a node has a tangent that every product reads: an estimate cannot afford
+/// as many harmonics as with a law for each point.
+#[test]
+fn estimates_of_coupled_points_reach_less_far() {
+    let nodes = model(coulomb(28, 2), Damping::Rayleigh, 0.0);
+    let alone = model(jenkins(84), Damping::Rayleigh, 0.0);
+    let reach = |model| Extension::new(&Harmonics::new(3, false), 1.0, model, 40, 1).highest;
+    let [nodes, alone] = [&nodes, &alone].map(reach);
+    assert!(nodes < alone, "{nodes} and {alone}");
 }
