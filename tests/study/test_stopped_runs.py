@@ -4,15 +4,21 @@ import os
 import random
 import signal
 import subprocess
+import sys
 import time
+from typing import Annotated
 
 import numpy as np
 import pytest
+import typer
+from pydantic import BeforeValidator
 
 import stickslip as ss
-from beam_study import COMMAND
 from failing_disk import names
 from small_study import MISTUNED, PAD
+from stickslip.cli.exit_codes import guarded
+from stickslip.settings.entries import Table
+from stickslip.settings.refusal import validated
 
 UNCERTAIN = (
     PAD
@@ -40,14 +46,20 @@ CODES = {signal.SIGINT: 130, signal.SIGTERM: 143, signal.SIGKILL: -signal.SIGKIL
 
 
 def begin(folder, name):
-    """Start a run, in which Ctrl-C is heeded whatever the parent does with it."""
-    command = [*COMMAND, "run", f"{name}.toml", "--no-plot", "--quiet"]
+    """Start a run, in which Ctrl-C is heeded whatever the parent does with it.
+
+    The command has been loaded when this returns.
+    """
+    code = "from stickslip.cli import app; print(flush=True); app()"
+    command = [sys.executable, "-c", code, "run", f"{name}.toml", "--no-plot", "--quiet"]
     streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
 
     def heed():
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
-    return subprocess.Popen(command, cwd=folder, preexec_fn=heed, **streams)
+    run = subprocess.Popen(command, cwd=folder, preexec_fn=heed, **streams)
+    run.stdout.readline()
+    return run
 
 
 def numbers(file):
@@ -66,8 +78,8 @@ def test_a_run_that_was_stopped_anywhere_ends_as_an_unbroken_one(name, tmp_path)
     for folder in (unbroken, stopped):
         folder.mkdir()
         (folder / f"{name}.toml").write_text(STUDIES[name])
-    started = time.monotonic()
     with begin(unbroken, name) as run:
+        started = time.monotonic()
         assert run.wait() == 0
     whole = time.monotonic() - started
     codes = []
@@ -97,3 +109,65 @@ def test_a_run_that_was_stopped_anywhere_ends_as_an_unbroken_one(name, tmp_path)
             np.testing.assert_array_equal(found[variable], values, err_msg=variable)
     # Otherwise nothing was stopped.
     assert any(codes)
+
+
+def swallowing(number):
+    """Return the text of a module that loses the exception of a signal while it is imported."""
+    return f"""
+import signal
+import time
+
+try:
+    signal.raise_signal({number})
+    time.sleep(0.01)
+except KeyboardInterrupt:
+    pass
+"""
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_that_comes_during_an_import_is_not_lost(number, tmp_path, monkeypatch):
+    (tmp_path / "swallowing.py").write_text(swallowing(int(number)))
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.delitem(sys.modules, "swallowing", raising=False)
+
+    @guarded
+    def wait():
+        import swallowing  # noqa: F401
+
+        time.sleep(20.0)
+
+    started = time.monotonic()
+    with pytest.raises(typer.Exit) as stop:
+        wait()
+    assert stop.value.exit_code == CODES[number]
+    assert time.monotonic() - started < 10.0
+
+
+def test_an_error_that_takes_the_place_of_the_signal_is_no_defect():
+    @guarded
+    def fail():
+        try:
+            signal.raise_signal(signal.SIGTERM)
+        except KeyboardInterrupt:
+            raise RuntimeError("half done") from None
+
+    with pytest.raises(typer.Exit) as stop:
+        fail()
+    assert stop.value.exit_code == CODES[signal.SIGTERM]
+
+
+def test_a_signal_during_the_check_of_settings_is_no_refused_value():
+    def pressed(value):
+        signal.raise_signal(signal.SIGINT)
+        return value
+
+    class Pressed(Table):
+        value: Annotated[float, BeforeValidator(pressed)]
+
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            validated(Pressed, {"value": 1.0})
+    finally:
+        signal.signal(signal.SIGINT, before)

@@ -64,7 +64,7 @@ const TRUSTED: f64 = 2.0;
 pub(super) enum Steps {
     /// One: a second cannot be afforded.
     One,
-    /// One, of which is asked whether contacts keep their states.
+    /// One, as long as contacts keep their states; two otherwise.
     OneInState,
     /// Two, unless the first explains the motion of all contacts.
     Two,
@@ -124,9 +124,14 @@ impl Extension {
         Self { highest: order, steps, unseen }
     }
 
-    /// Its first step alone, as follows a neighbour; nothing if it has no more.
-    pub(super) fn beside(self) -> Option<Self> {
-        (self.steps == Steps::Two).then_some(Self { steps: Steps::OneInState, ..self })
+    /// Whether a neighbour may tell what its second step adds.
+    pub(super) fn has_two(&self) -> bool {
+        self.steps == Steps::Two
+    }
+
+    /// Without the second step while contacts keep their states.
+    pub(super) fn beside(self) -> Self {
+        Self { steps: Steps::OneInState, ..self }
     }
 
     /// The discarded harmonics that it adds, with those between them.
@@ -219,6 +224,8 @@ pub(super) struct Estimate {
     pub(super) first: Vec<f64>,
     /// Whether it makes no contact begin or cease to slip.
     pub(super) keeps_states: bool,
+    /// Whether it ended after the first step because of that.
+    pub(super) ended_in_state: bool,
 }
 
 /// The estimate of a solution; `solved` are the equations that were solved, if they are at hand. Nothing
@@ -236,8 +243,12 @@ pub(super) fn estimate(
     interrupted: &dyn Fn() -> bool,
 ) -> Result<Option<Estimate>, Error> {
     let [zero, infinite] = [0.0, f64::INFINITY].map(|error| vec![error; observe.len()]);
-    let infinite = Estimate { first: infinite.clone(), errors: infinite, keeps_states: false };
-    let infinite = Ok(Some(infinite));
+    let infinite = Ok(Some(Estimate {
+        first: infinite.clone(),
+        errors: infinite,
+        keeps_states: false,
+        ended_in_state: false,
+    }));
     let mut extended = Condensed::new(model, table, residual, false);
     extended.watch(interrupted);
     if extended.set_omega_beside(point.omega, solved).is_err() {
@@ -246,7 +257,8 @@ pub(super) fn estimate(
     let mut x = solution.recast(table.harmonics());
     let (mut defect, mut step) = (vec![0.0; x.len()], vec![0.0; x.len()]);
     extended.residual(&x, &mut defect);
-    let mut found = Estimate { errors: zero.clone(), first: zero, keeps_states: true };
+    let mut found =
+        Estimate { errors: zero.clone(), first: zero, keeps_states: true, ended_in_state: false };
     for last in [false, true] {
         if extended.interrupted() {
             return Ok(None);
@@ -269,8 +281,10 @@ pub(super) fn estimate(
         match extension.steps {
             Steps::One => break,
             Steps::OneInState => {
-                found.keeps_states = extended.keeps_states(&x);
-                break;
+                found.ended_in_state = extended.keeps_states(&x);
+                if found.ended_in_state {
+                    break;
+                }
             }
             Steps::Two => {}
         }

@@ -67,29 +67,27 @@ impl ForcedBalance<'_> {
         let observed = self.observe.len();
         let whole = Extension::new(harmonics, point.omega, &self.model, slipping, observed);
         // Where harmonics are chosen, every estimate decides by itself.
-        let beside = whole.beside().filter(|_| self.control.is_fixed());
+        let follows = whole.has_two() && self.control.is_fixed();
         let solution = Unknowns { harmonics: harmonics.clone(), values: x.to_vec() };
-        if beside.is_some() {
+        if follows {
             let (discarded, of) = (whole.discarded(harmonics), self.model.compliance());
             if let Some(errors) = self.neighbour.piece.continued(point, &solution, of, discarded) {
                 point.error_estimate = errors;
                 return Ok(true);
             }
         }
-        if let Some((first, growth)) = beside.zip(self.neighbour.served(point)) {
-            let estimate = self.extended(&solution, solved, point, first)?;
-            let Some(estimate) = estimate else { return Ok(false) };
-            if estimate.keeps_states {
-                let errors = estimate.errors.iter().zip(growth).map(|(error, by)| error * by);
-                point.error_estimate = errors.collect();
-                self.neighbour.note(point, solution, &point.error_estimate);
-                return Ok(true);
-            }
+        let growth = if follows { self.neighbour.served(point) } else { None };
+        let extension = if growth.is_some() { whole.beside() } else { whole };
+        let estimate = self.extended(&solution, solved, point, extension)?;
+        let Some(Estimate { mut errors, first, keeps_states, ended_in_state }) = estimate else {
+            return Ok(false);
+        };
+        if let Some(growth) = growth.filter(|_| ended_in_state) {
+            errors.iter_mut().zip(growth).for_each(|(error, by)| *error *= by);
+        } else {
+            let told = follows && keeps_states;
+            self.neighbour.learn(point, &errors, told.then_some(&first[..]));
         }
-        let estimate = self.extended(&solution, solved, point, whole)?;
-        let Some(Estimate { errors, first, keeps_states }) = estimate else { return Ok(false) };
-        let told = beside.is_some() && keeps_states;
-        self.neighbour.learn(point, &errors, told.then_some(&first[..]));
         self.neighbour.note(point, solution, &errors);
         point.error_estimate = errors;
         Ok(true)

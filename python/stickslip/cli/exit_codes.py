@@ -10,7 +10,7 @@ import threading
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from functools import wraps
+from functools import partial, wraps
 from types import FrameType
 from typing import Any, ParamSpec, cast
 
@@ -24,6 +24,8 @@ from stickslip.interruption import SIGNALS
 NOT_CONVERGED, REFUSED, DEFECT = 1, 2, 70
 STOPPED = 128
 """Exit code of a run that a signal has ended, beside the signal's number."""
+_AGAIN = 0.05
+"""Seconds after which a signal that came during an import is heeded."""
 
 P = ParamSpec("P")
 # Its own base class has moved from click into typer.
@@ -87,6 +89,15 @@ def integer(written: object) -> int:
     return int(text)
 
 
+def _imports(frame: FrameType | None) -> bool:
+    """Say whether a module is being imported."""
+    while frame is not None:
+        if frame.f_code.co_filename == "<frozen importlib._bootstrap>":
+            return True
+        frame = frame.f_back
+    return False
+
+
 @contextmanager
 def _ended_by_signals(ended: list[int]) -> Iterator[None]:
     """Let signals that would kill a run end it as Ctrl-C does, and note them.
@@ -94,24 +105,32 @@ def _ended_by_signals(ended: list[int]) -> Iterator[None]:
     Signals that the parent ignores, as ``nohup`` does with SIGHUP and a shell without job control
     with the Ctrl-C of what it runs behind ``&``, stay ignored.
     """
+    # On Windows it would end the process at once.
+    send = partial(os.kill, os.getpid()) if os.name == "posix" else signal.raise_signal
 
-    def end(number: int, _: FrameType | None) -> None:
+    def end(number: int, frame: FrameType | None) -> None:
+        if _imports(frame):
+            # Compiled modules swallow the exception here, or raise others in its place.
+            later = threading.Timer(_AGAIN, send, (number,))
+            later.daemon = True
+            later.start()
+            return
         ended.append(number)
         raise KeyboardInterrupt
 
-    mortal = [
-        number
+    handlers = {
+        number: signal.getsignal(number)
         for number in SIGNALS
         if threading.current_thread() is threading.main_thread()
-        and signal.getsignal(number) is signal.SIG_DFL
-    ]
-    for number in mortal:
+        and signal.getsignal(number) in (signal.SIG_DFL, signal.default_int_handler)
+    }
+    for number in handlers:
         signal.signal(number, end)
     try:
         yield
     finally:
-        for number in mortal:
-            signal.signal(number, signal.SIG_DFL)
+        for number, handler in handlers.items():
+            signal.signal(number, handler)
 
 
 def guarded(command: Callable[P, None]) -> Callable[P, None]:
@@ -145,6 +164,10 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
             complain("error", f"{error.filename or 'file'}: {error.strerror or error}")
             raise typer.Exit(REFUSED) from None
         except Exception as error:
+            if ended:
+                # An error of a library, which the signal has left half done.
+                complain("interrupted", "nothing more was saved")
+                raise typer.Exit(STOPPED + ended[0]) from None
             cause = " ".join(f"{type(error).__name__}: {error}".split())
             advice = (
                 "this is a defect of stickslip; set STICKSLIP_DEBUG=1 to see where, and report it"

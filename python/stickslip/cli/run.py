@@ -140,12 +140,12 @@ def _compute(study: Study, out: Path, clock: Clock, *, quiet: bool) -> list[Resu
             for case, result in zip(cases, study.run(watch), strict=True):
                 with clock("saving"):
                     save(result, _file(out, case))
+                    computed.append(result)
                     part = _file(out, case, "-partial")
                     # Another study may have this name; its results say that they are whole.
                     with suppress(ModelError, OSError):
                         if part.is_file() and load(part).interrupted:
                             part.unlink()
-                computed.append(result)
                 watch.heed()
         except Interrupted as stop:
             complain("interrupted", "saving what was computed")

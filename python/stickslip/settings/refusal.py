@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import TypeVar
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
 from stickslip.checks import brief, unknown
 from stickslip.errors import EntryError, ModelError
+from stickslip.interruption import Interruption
 from stickslip.model.laws import unknown_law
 
 _PHRASES = {
@@ -28,6 +30,18 @@ _PHRASES = {
 
 _REPEATED = ("contact", "force", "coupling")
 _TABLES = (*_REPEATED, "structure", "disk", "output")
+
+_Table = TypeVar("_Table", bound=BaseModel)
+
+
+def validated(table: type[_Table], content: Mapping[str, object], context: object = None) -> _Table:
+    """Return a table of checked entries, or raise `ModelError` with what is wrong."""
+    try:
+        # To pydantic an interrupted check is a refused value.
+        with Interruption():
+            return table.model_validate(content, context=context)
+    except ValidationError as error:
+        raise refusal(error) from None
 
 
 def refusal(error: ValidationError) -> ModelError:

@@ -9,7 +9,6 @@ from functools import wraps
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, Self, TypeVar, Union, get_args, get_origin
 
-from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 
 from stickslip import numpydoc
@@ -19,7 +18,7 @@ from stickslip.errors import CallError, ModelError
 from stickslip.model.model import Model, require_model
 from stickslip.settings.entries import CALL, Table
 from stickslip.settings.ranges import Or
-from stickslip.settings.refusal import refusal
+from stickslip.settings.refusal import validated
 
 _Result = TypeVar("_Result")
 _INDENT = 4 * " "
@@ -32,10 +31,7 @@ class Settings(Table):
     @classmethod
     def of(cls, **values: Any) -> Self:
         """Return settings of checked values."""
-        try:
-            return cls.model_validate(values, context=CALL)
-        except ValidationError as error:
-            raise refusal(error) from None
+        return validated(cls, values, CALL)
 
     @classmethod
     def stored(cls, values: Mapping[str, Any]) -> Self:

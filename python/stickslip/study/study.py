@@ -10,8 +10,6 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from pydantic import ValidationError
-
 from stickslip.analyses.run import Progress
 from stickslip.analyses.side_by_side import in_turn
 from stickslip.analyses.sweep import swept
@@ -20,7 +18,7 @@ from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.model.notable import notable_dofs, physical_dofs
 from stickslip.results.result import Result
-from stickslip.settings.refusal import refusal
+from stickslip.settings.refusal import validated
 from stickslip.study.analysis import level_name
 from stickslip.study.assembly import at_speed_of, depends_on_speed, model_of
 from stickslip.study.matrices import named, neighbour
@@ -249,11 +247,7 @@ def _read(text: str) -> StudyTables:
     except (ValueError, RecursionError):
         # Python reads integers of at most 4300 digits; lists nest without end.
         raise ModelError("not readable: a number is too long, or lists nest too deep") from None
-
-    try:
-        return StudyTables.model_validate(content)
-    except ValidationError as error:
-        raise refusal(error) from None
+    return validated(StudyTables, content)
 
 
 def _real(text: str) -> float:
