@@ -16,6 +16,7 @@ _EDGES: dict[str, list[tuple[int, int]]] = {
     "quad": _QUADRILATERAL,
     "tetra": [*_TRIANGLE, (0, 3), (1, 3), (2, 3)],
     "wedge": [*_TRIANGLE, (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (2, 5)],
+    "pyramid": [*_QUADRILATERAL, *((one, 4) for one in range(4))],
     "hexahedron": [
         *_QUADRILATERAL,
         *((one + 4, other + 4) for one, other in _QUADRILATERAL),
@@ -28,6 +29,7 @@ _FACES: dict[str, list[tuple[int, ...]]] = {
     "quad": [(0, 1, 2, 3)],
     "tetra": [(0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0)],
     "wedge": [(0, 1, 2), (3, 5, 4), (0, 3, 4, 1), (1, 4, 5, 2), (2, 5, 3, 0)],
+    "pyramid": [(0, 3, 2, 1), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)],
     "hexahedron": [
         *((0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1)),
         *((1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 4, 0)),
@@ -39,6 +41,7 @@ KINDS = {
     **dict.fromkeys(("quad", "quad8"), "quad"),
     **dict.fromkeys(("tetra", "tetra10"), "tetra"),
     **dict.fromkeys(("wedge", "wedge15"), "wedge"),
+    **dict.fromkeys(("pyramid", "pyramid13"), "pyramid"),
     **dict.fromkeys(("hexahedron", "hexahedron20"), "hexahedron"),
 }
 """Kinds of elements, named as meshio does, and the shape of each."""
@@ -46,7 +49,10 @@ _SHELLS = ("triangle", "quad")
 
 
 def outside(cells: Sequence[tuple[str, Places]], points: Matrix) -> list[Places]:
-    """Return the faces that belong to one solid element only, and all shells."""
+    """Return the faces that belong to one solid element only, and the shells on no solid.
+
+    A shell on the face of a solid, its skin, would count the area of the face twice.
+    """
     known = [(kind, own) for kind, own in cells if kind in KINDS]
     solid = [(kind, own) for kind, own in known if KINDS[kind] not in _SHELLS]
     found = [
@@ -55,13 +61,19 @@ def outside(cells: Sequence[tuple[str, Places]], points: Matrix) -> list[Places]
         for number in range(1, len(_FACES[KINDS[kind]]) + 1)
         for faces in [element_faces(kind, own, number, points)]
     ]
-    keys = np.vstack([_keys(faces) for faces in found] or [np.zeros((0, 4), np.int64)])
-    _, place, times = np.unique(keys, axis=0, return_inverse=True, return_counts=True)
-    single = times[place.ravel()] == 1
-    ends = np.cumsum([len(faces) for faces in found])[:-1]
-    kept = [f[one] for f, one in zip(found, np.split(single, ends), strict=True)]
     shells = [own for kind, own in known if KINDS[kind] in _SHELLS]
-    return kept + shells
+    every = [*found, *shells]
+    if not every:
+        return []
+    keys = np.vstack(list(map(corner_keys, every)))
+    _, first, place = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+    place, count = place.ravel(), sum(map(len, found))
+    of_solids = np.bincount(place[:count], minlength=len(first))
+    kept = of_solids[place] == 1
+    # The first face of several alike is one of a solid, if there is one.
+    kept[count:] = first[place[count:]] == np.arange(count, len(keys))
+    ends = np.cumsum([len(faces) for faces in every])[:-1]
+    return [faces[one] for faces, one in zip(every, np.split(kept, ends), strict=True)]
 
 
 def element_faces(kind: str, cells: Places, number: int, points: Matrix) -> Places:
@@ -83,7 +95,7 @@ def face_count(kind: str) -> int:
     return len(_FACES[KINDS[kind]])
 
 
-def _keys(faces: Places) -> Places:
+def corner_keys(faces: Places) -> Places:
     """Return the corners of faces in ascending order, (m, 4), of triangles after a -1."""
     corners = faces[:, : 4 if faces.shape[1] in (4, 8) else 3]
     padded = np.full((len(faces), 4), -1)

@@ -54,6 +54,9 @@ class Mesh:
         Nodes of each set, counted from 0.
     surfaces : mapping of str to sequence of array_like of int, optional
         Faces of each surface, arrays of nodes counted from 0, (m, k), by their number of nodes.
+    rotated : array_like of int, optional
+        Nodes, counted from 0, whose displacements have directions of their own, not x, y and z.
+        What needs x, y and z refuses them.
 
     Raises
     ------
@@ -67,6 +70,7 @@ class Mesh:
     numbers: NDArray[np.int64]
     node_sets: Mapping[str, Places]
     surfaces: Mapping[str, tuple[Places, ...]]
+    rotated: Places
 
     def __init__(
         self,
@@ -75,6 +79,7 @@ class Mesh:
         numbers: ArrayLike | None = None,
         node_sets: Mapping[str, ArrayLike] | None = None,
         surfaces: Mapping[str, Sequence[ArrayLike]] | None = None,
+        rotated: ArrayLike = (),
     ) -> None:
         places = real_array(nodes, "mesh: nodes", "three coordinates each")
         if places.ndim != 2 or places.shape[1] != 3 or not places.size:
@@ -107,11 +112,19 @@ class Mesh:
             )
             for name, own in (surfaces or {}).items()
         }
-        for name, own in [*sets.items(), *((n, f) for n, many in faces.items() for f in many)]:
+        turned = whole_array(rotated, "mesh: rotated", "positions of nodes")
+        parts = [*sets.items(), *((n, f) for n, many in faces.items() for f in many)]
+        for name, own in [*parts, ("rotated", turned)]:
             if ((own < 0) | (own >= count)).any():
                 raise ModelError(f"mesh: {name} has a node that is not among the {count}")
         set_fields(
-            self, nodes=places, cells=elements, numbers=known, node_sets=sets, surfaces=faces
+            self,
+            nodes=places,
+            cells=elements,
+            numbers=known,
+            node_sets=sets,
+            surfaces=faces,
+            rotated=turned,
         )
 
     def __repr__(self) -> str:
@@ -143,7 +156,7 @@ class Mesh:
         if isinstance(part, str):
             entry = f"surface {brief(part)}"
             if part in self.surfaces:
-                return Surface.of(self.numbers, self.nodes, self.surfaces[part], entry)
+                return self._surface_of(self.surfaces[part], entry)
             if part not in self.node_sets:
                 names = [*self.surfaces, *self.node_sets]
                 raise ModelError(f"mesh: {unknown('surface or node set', part, names)}")
@@ -163,7 +176,7 @@ class Mesh:
             faces[among[faces[:, : 4 if faces.shape[1] in (4, 8) else 3]].all(axis=1)]
             for faces in outside(self.cells, self.nodes)
         ]
-        return Surface.of(self.numbers, self.nodes, whole, entry)
+        return self._surface_of(whole, entry)
 
     def node_at(self, point: ArrayLike, within: float | None = None) -> int:
         """Return the number of the node nearest to a point.
@@ -199,7 +212,9 @@ class Mesh:
         `direction` is 1, 2 or 3, of rotations 4, 5 or 6; see `node_at`.
         """
         way = whole_number(direction, "direction", smallest=1, largest=6)
-        return f"{self.node_at(point, within)}.{way}"
+        number = self.node_at(point, within)
+        self._require_global(np.flatnonzero(self.numbers == number), "point")
+        return f"{number}.{way}"
 
     def field(self, dofs: Iterable[str], values: ArrayLike) -> NDArray[Any]:
         """Return displacements at the nodes, shape (n, 3).
@@ -221,6 +236,7 @@ class Mesh:
         if moved.shape != (len(names),):
             raise ModelError(f"field: shape {moved.shape} for {len(names)} dofs; give one of each")
         nodes, ways = self._places(names)
+        self._require_global(nodes, "field")
         made = np.zeros((len(self.nodes), 3), moved.dtype)
         kept = ways < 3
         made[nodes[kept], ways[kept]] = moved[kept]
@@ -308,6 +324,20 @@ class Mesh:
         needed.
         """
         write_vtu(path, self.nodes, self.cells, fields)
+
+    def _surface_of(self, faces: Iterable[Places], entry: str) -> Surface:
+        made = Surface.of(self.numbers, self.nodes, faces, entry)
+        self._require_global(np.flatnonzero(np.isin(self.numbers, made.labels)), entry)
+        return made
+
+    def _require_global(self, nodes: Places, entry: str) -> None:
+        """Refuse nodes whose displacements are not along x, y and z."""
+        wrong = np.intersect1d(nodes, self.rotated)
+        if wrong.size:
+            raise ModelError(
+                f"{entry}: node {self.numbers[wrong[0]]} has directions of its own, not x, y and "
+                "z; give it those of the model before matrices and mesh are written"
+            )
 
     def _contacts(
         self, response: ForcedResponse, point: int, reduction: Reduction | None

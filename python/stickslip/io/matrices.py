@@ -24,7 +24,7 @@ from stickslip.io.abaqus import read_abaqus, read_calculix, read_calculix_dofs
 from stickslip.io.ansys import read_ansys
 from stickslip.io.dmig import read_dmig
 from stickslip.io.entries import Labelled, require_size
-from stickslip.io.harwell_boeing import read_harwell_boeing
+from stickslip.io.mapping import read_hbmat, read_mapping
 from stickslip.io.matlab import read_matlab
 from stickslip.io.matrix_market import read_matrix_market
 from stickslip.io.npz import read_numpy
@@ -59,8 +59,9 @@ def read_matrix(
     path : str or path-like
         The file. Its ending says what it is: `.npy`, `.npz` (of `numpy.savez` or
         `scipy.sparse.save_npz`), `.mat` (MATLAB), `.mtx` or
-        `.mtx.gz` (MatrixMarket, or Abaqus' text), `.hb`, `.rb`, `.rua`, `.rsa`, `.hbf`, `.psa`
-        (Harwell-Boeing and Rutherford-Boeing, as of ANSYS' HBMAT), `.op4` (Nastran's OUTPUT4),
+        `.mtx.gz` (MatrixMarket, or Abaqus' text), `.hb`, `.rb`, `.rua`, `.rsa`, `.hbf`, `.psa`,
+        `.matrix` (Harwell-Boeing and Rutherford-Boeing, as of ANSYS' HBMAT, whose `.mapping` may
+        lie beside it to name the rows), `.op4` (Nastran's OUTPUT4),
         `.pch`, `.dmig` (Nastran's DMIG), `.sti`, `.mas` (CalculiX, with the `.dof` beside it),
         `.full` (ANSYS, with the package ansys-mapdl-reader).
     key : str, optional
@@ -104,7 +105,7 @@ def read_dofs(path: str | os.PathLike[str], key: str | None = None) -> tuple[str
     ----------
     path, key
         As of `read_matrix`: CalculiX (`.sti`, `.mas`, `.dof`), Nastran's DMIG, Abaqus' matrix input
-        format and substructures, ANSYS' `.full`.
+        format and substructures, ANSYS' `.full` and HBMAT (`.mapping`, or a matrix beside it).
 
     Raises
     ------
@@ -112,9 +113,10 @@ def read_dofs(path: str | os.PathLike[str], key: str | None = None) -> tuple[str
         If the file cannot be read, or does not name its rows.
     """
     file = file_path(path, "path")
-    if _ending(file) == ".dof":
-        with readable(file, ".dof"):
-            return read_calculix_dofs(file)
+    by_itself = {".dof": read_calculix_dofs, ".mapping": read_mapping}.get(_ending(file))
+    if by_itself:
+        with readable(file, _ending(file)):
+            return by_itself(file)
     names = _load(file, key).dofs
     if names is None:
         raise ModelError(f"{file}: it does not name its rows; count them, from 0")
@@ -187,7 +189,7 @@ _READERS: dict[str, _Reader] = {
     ".mat": read_matlab,
     ".mtx": _read_mtx,
     ".mtx.gz": _only(read_matrix_market),
-    **dict.fromkeys((".hb", ".rb", ".rua", ".rsa", ".hbf", ".psa"), _only(read_harwell_boeing)),
+    **dict.fromkeys((".hb", ".rb", ".rua", ".rsa", ".hbf", ".psa", ".matrix"), _only(read_hbmat)),
     ".op4": read_op4,
     **dict.fromkeys((".pch", ".dmig"), read_dmig),
     **dict.fromkeys((".sti", ".mas"), _only(read_calculix)),

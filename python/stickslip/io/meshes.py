@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import os
 from contextlib import redirect_stderr, redirect_stdout
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,9 +13,11 @@ from numpy.typing import ArrayLike
 from stickslip.checks import file_path, optional_package
 from stickslip.errors import ModelError
 from stickslip.fe.mesh import Mesh
+from stickslip.io.ansys_mesh import mesh_of_archive
+from stickslip.io.archive import is_archive, parse_archive
 from stickslip.io.bulk_data import read_bulk
 from stickslip.io.decks import read_deck
-from stickslip.io.source import readable
+from stickslip.io.source import plain, readable
 from stickslip.model.matrix_units import MatrixUnits, Units
 
 
@@ -56,10 +59,10 @@ def read_mesh(
     """
     file = file_path(path, "path")
     metres = 1.0 if units is None else MatrixUnits.of(units).length
-    if file.suffix.lower() == ".inp":
-        deck = read_deck(file)
-        known = deck.numbers if numbers is None else numbers
-        return Mesh(metres * deck.nodes, deck.cells, known, deck.node_sets, deck.surfaces)
+    if file.suffix.lower() in (".inp", ".cdb", ".dat"):
+        own_mesh = _deck_or_archive(file)
+        if own_mesh is not None:
+            return _changed(own_mesh, metres, numbers)
     with readable(file, "mesh"):
         meshio = optional_package("meshio", f"{file}: meshes")
         # It names the line of what is wrong, and meshio does not.
@@ -81,3 +84,25 @@ def read_mesh(
         return Mesh(metres * points, cells, own, bulk.node_sets() if bulk else None)
     except ModelError as error:
         raise ModelError(f"{file}: {error}") from None
+
+
+def _deck_or_archive(file: Path) -> Mesh | None:
+    """Return a mesh that no further package has to read; None: it is of another program."""
+    ending = file.suffix.lower()
+    with readable(file, "archive of ANSYS"):
+        text = plain(file.read_bytes(), "latin-1")
+        if ending == ".cdb" or is_archive(text):
+            return mesh_of_archive(parse_archive(text))
+    return read_deck(file) if ending == ".inp" else None
+
+
+def _changed(mesh: Mesh, metres: float, numbers: ArrayLike | None) -> Mesh:
+    """Return a mesh in another unit of length, with other numbers if they are given."""
+    return Mesh(
+        metres * mesh.nodes,
+        mesh.cells,
+        mesh.numbers if numbers is None else numbers,
+        mesh.node_sets,
+        mesh.surfaces,
+        mesh.rotated,
+    )

@@ -1,0 +1,415 @@
+"""Meshes of ANSYS: archives of CDWRITE, and what Workbench writes for its solver."""
+
+import random
+import re
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+from archives import archive
+from mutations import mutated
+
+CORNERS = ((0, 0), (2, 0), (2, 3), (0, 3))
+LOW = dict(zip(range(1, 9), [(x, y, z) for z in (0, 1) for x, y in CORNERS], strict=True))
+HIGH = dict(zip(range(21, 29), [(x, y, z + 1) for x, y, z in LOW.values()], strict=True))
+NODES = {number: tuple(map(float, place)) for number, place in (LOW | HIGH).items()}
+ELEMENTS = [(10, 2, [*LOW]), (20, 2, [*HIGH]), (31, 3, [24, 23, 22, 21])]
+COMPONENTS = [
+    ("SEAT", "NODE", [5, 6, 7, 8]),
+    ("PAD", "NODE", [21, 22, 23, 24]),
+    ("CONTACTS", "ELEM", [31]),
+    ("BODIES", "ELEM", [10, 20]),
+]
+TYPES = {2: 185, 3: 173}
+
+
+def joint(**changes):
+    given = {"nodes": NODES, "elements": ELEMENTS, "types": TYPES, "components": COMPONENTS}
+    return archive(**given | changes)
+
+
+def read(folder, text, name="joint.cdb", **said):
+    path = folder / name
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    return ss.read_mesh(path, **said)
+
+
+def deck(folder, nodes, cells, sets):
+    """Read the same mesh as a deck of CalculiX; `cells` are type and nodes of each element."""
+    lines = ["*NODE", *(f"{n}, {x!r}, {y!r}, {z!r}" for n, (x, y, z) in nodes.items())]
+    for number, (kind, own) in enumerate(cells, 1):
+        words = [*map(str, own)]
+        lines += [f"*ELEMENT, TYPE={kind}", f"{number}, " + ", ".join(words[:10]) + ","]
+        lines += [", ".join(words[10:])] if words[10:] else []
+    for name, own in sets.items():
+        lines += [f"*NSET, NSET={name}", *(f"{one}," for one in own)]
+    path = folder / "joint.inp"
+    path.write_text("\n".join([*lines, ""]))
+    return ss.read_mesh(path)
+
+
+@pytest.mark.parametrize(("integers", "reals"), [(9, "21.13e3"), (8, "20.13"), (8, "16.9")])
+def test_an_archive_pairs_as_the_deck_of_the_same_mesh(tmp_path, integers, reals):
+    mesh = read(tmp_path, joint(integers=integers, reals=reals))
+    sets = {name: own for name, kind, own in COMPONENTS if kind == "NODE"}
+    other = deck(tmp_path, NODES, [("C3D8", LOW), ("C3D8", HIGH)], sets)
+    assert mesh.numbers.tolist() == other.numbers.tolist()
+    np.testing.assert_array_equal(mesh.nodes, other.nodes)
+    pairs = [ss.ContactInterface.from_surfaces(one, "PAD", one, "SEAT") for one in (mesh, other)]
+    for name in ("first", "other", "areas", "normals", "gap"):
+        np.testing.assert_array_equal(*(getattr(one, name) for one in pairs), err_msg=name)
+    assert pairs[0].area == pytest.approx(6.0)
+    assert pairs[0].dofs[:3] == ("21.1", "21.2", "21.3")
+    # the contact elements lie on the same faces; they turn to the other body whatever their order
+    contacts = mesh.surface("CONTACTS")
+    assert contacts.areas == pytest.approx(pairs[0].areas)
+    np.testing.assert_allclose(contacts.normals, pairs[0].normals, atol=1e-15)
+    with pytest.raises(ss.ModelError, match="unknown surface or node set 'BODIES'"):
+        mesh.surface("BODIES")
+
+
+def test_units_and_numbers(tmp_path):
+    mesh = read(tmp_path, joint(), units="t-mm-s")
+    pair = ss.ContactInterface.from_surfaces(mesh, "PAD", mesh, "SEAT")
+    assert pair.area == pytest.approx(6e-6)
+    renumbered = ss.read_mesh(tmp_path / "joint.cdb", np.arange(101, 117))
+    assert renumbered.surface("PAD").labels.tolist() == [109, 110, 111, 112]
+
+
+AROUND = [(0, 1), (1, 2), (2, 3), (3, 0)]
+EDGES = [*AROUND, *((a + 4, b + 4) for a, b in AROUND), *((a, a + 4) for a in range(4))]
+"""Of a brick, in the order of the nodes between its corners."""
+SHAPES = {
+    "tetra": ([0, 1, 2, 2, 4, 4, 4, 4], ("C3D4", "C3D10")),
+    "wedge": ([0, 1, 2, 2, 4, 5, 6, 6], ("C3D6", "C3D15")),
+    "hexahedron": ([*range(8)], ("C3D8", "C3D20R")),
+    "pyramid": ([0, 1, 2, 3, 4, 4, 4, 4], None),
+}
+PLACES = np.array([[x, y, z] for z in (0, 1) for x, y in CORNERS], float)
+PLACES[4:, :2] = PLACES[4:, :2] * 0.75 + 0.25
+
+
+def brick(corners, middles):
+    """Return nodes and element of a brick; edges that coincide have one node between them."""
+    nodes = {1 + at: PLACES[at].tolist() for at in sorted({*corners})}
+    own, between = [1 + at for at in corners], {}
+    for ends in [{corners[a], corners[b]} for a, b in EDGES] if middles else ():
+        one, other = min(ends), max(ends)
+        number = between.setdefault((one, other), 101 + len(between)) if one < other else 1 + one
+        nodes[number] = ((PLACES[one] + PLACES[other]) / 2).tolist()
+        own.append(number)
+    return nodes, own
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize("middles", [False, True])
+def test_bricks_whose_corners_coincide(tmp_path, shape, middles):
+    corners, kinds = SHAPES[shape]
+    nodes, own = brick(corners, middles)
+    element = 186 if middles else 45
+    text = archive(nodes, [(7, 1, own)], {1: element}, [("ALL", "NODE", [*nodes])])
+    mesh = read(tmp_path, text)
+    ((kind, cells),) = mesh.cells
+    surface = mesh.surface("ALL")
+    assert kind.startswith(shape)
+    assert len(surface.labels) == len(nodes) == cells.shape[1]
+    total = sum(vectors.sum(axis=(0, 1)) for _, _, vectors in surface._integrals)
+    np.testing.assert_allclose(total, 0.0, atol=1e-12)
+    if kinds:
+        order = mesh.numbers[cells[0]].tolist()
+        other = deck(tmp_path, nodes, [(kinds[middles], order)], {"ALL": [*nodes]})
+        assert other.cells[0][0] == kind
+        np.testing.assert_array_equal(surface.areas, other.surface("ALL").areas)
+    else:
+        arms = PLACES[:4] - PLACES[4]
+        sides = np.linalg.norm(np.cross(arms, np.roll(arms, 1, axis=0)), axis=1) / 2
+        assert surface.area == pytest.approx(6.0 + sides.sum())
+
+
+def test_a_pyramid_covers_the_face_of_the_brick_below(tmp_path):
+    nodes = NODES | {30: (1.0, 1.0, 3.0)}
+    elements = [(20, 1, [*HIGH]), (21, 1, [25, 26, 27, 28, 30, 30, 30, 30])]
+    mesh = read(tmp_path, archive(nodes, elements, {1: 185}, [("ALL", "NODE", [*HIGH, 30])]))
+    faces = mesh.surface("ALL").faces
+    assert [sum(len(one) for one in faces if one.shape[1] == size) for size in (3, 4)] == [4, 5]
+
+
+@pytest.mark.parametrize(
+    ("element", "own", "kind"),
+    [
+        (187, range(1, 11), "tetra10"),
+        (187, range(1, 5), "tetra"),
+        (285, range(1, 5), "tetra"),
+        (186, range(1, 9), "hexahedron"),
+        (181, (1, 2, 3, 4), "quad"),
+        (181, (1, 2, 3, 3), "triangle"),
+        (181, (1, 2, 3), "triangle"),
+        (281, range(1, 9), "quad8"),
+        (281, (1, 2, 3, 3, 5, 6, 3, 7), "triangle6"),
+        (281, (1, 2, 3, 4), "quad"),
+    ],
+)
+def test_kinds_of_elements(tmp_path, element, own, kind):
+    places = np.random.default_rng(1).random((10, 3))
+    nodes = {number: tuple(place) for number, place in enumerate(places.round(12).tolist(), 1)}
+    mesh = read(tmp_path, archive(nodes, [(7, 3, [*own])], {3: element}))
+    ((found, cells),) = mesh.cells
+    assert found == kind
+    assert mesh.numbers[cells[0]].tolist() == list(dict.fromkeys(own))
+    np.testing.assert_allclose(mesh.nodes, places, atol=1e-12)
+
+
+def test_other_elements_are_left_out(tmp_path):
+    """Springs and surface effects, with their node away from the surface, change no area."""
+    nodes = NODES | {40: (9.0, 9.0, 9.0)}
+    elements = [*ELEMENTS, (41, 4, [5, 21]), (42, 5, [25, 26, 27, 28, 40])]
+    parts = [*COMPONENTS, ("TOP", "ELEM", [42]), ("BOTH", "ELEM", [41, 42])]
+    text = archive(nodes, elements, {**TYPES, 4: 14, 5: 152}, parts)
+    mesh = read(tmp_path, text)
+    assert [(kind, len(own)) for kind, own in mesh.cells] == [("hexahedron", 2)]
+    assert mesh.surface("PAD").area == pytest.approx(6.0)
+    assert mesh.surface("TOP").points[:, 2].tolist() == [2.0] * 4
+    assert "BOTH" not in mesh.surfaces
+
+
+def test_a_shell_on_a_solid_does_not_count_twice(tmp_path):
+    skin = [(50, 6, [24, 23, 22, 21]), (51, 6, [1, 2, 3, 4])]
+    text = joint(elements=[*ELEMENTS[:2], *skin], types={2: 185, 6: 181}, components=COMPONENTS[:2])
+    mesh = read(tmp_path, text)
+    assert dict(mesh.cells).keys() == {"hexahedron", "quad"}
+    assert mesh.surface("PAD").area == pytest.approx(6.0)
+
+
+def test_rotated_nodes_are_refused_where_directions_count(tmp_path):
+    mesh = read(tmp_path, joint(angles={26: (30.0, 0.0, 0.0), 22: (0.0, -5.0, 0.0)}))
+    assert mesh.numbers[mesh.rotated].tolist() == [22, 26]
+    assert mesh.surface("SEAT").area == pytest.approx(6.0)
+    assert mesh.dof_at([0, 0, 2], 3) == "25.3"
+    for call, number in (
+        (lambda: mesh.surface("PAD"), 22),
+        (lambda: mesh.surface("CONTACTS"), 22),
+        (lambda: mesh.dof_at([2, 0, 2], 1), 26),
+        (lambda: mesh.field(["21.1", "22.1"], [1.0, 2.0]), 22),
+    ):
+        with pytest.raises(ss.ModelError, match=f"node {number} has directions of its own"):
+            call()
+
+
+def workbench(joined=True):
+    """Return what Workbench writes for its solver."""
+    ends = "" if joined else ",,16"
+    nodes = "".join(
+        f"{number:9d}" + "".join(f"{one:19.9e}".replace("e+", "e+0") for one in place) + "\n"
+        for number, place in NODES.items()
+    )
+    solids = "".join(
+        "".join(f"{one:9d}" for one in (1, 1, 1, 1, 0, 0, 0, 0, 8, 0, number, *own)) + "\n"
+        for number, _, own in ELEMENTS[:2]
+    )
+    contacts = "".join(f"{one:9d}" for one in (31, 3, 3, 3, 0, 24, 23, 22, 21)) + "\n"
+    return (
+        "/batch\n/com,*********** Nodes for the whole assembly ***********\n"
+        f"nblock,3{ends}\n(1i9,3e20.9e3)\n{nodes}-1\n"
+        f"et,1,185\neblock,19,solid,,2\n(19i9)\n{solids}-1\n"
+        f"*set,cid,3\n*set,tid,4\net,cid,174\net,tid,170\neblock,10,,,1\n(15i9)\n{contacts}-1\n"
+        "n,99,1.,2.,3.   ! pilot\ntype,tid\nen,100,99\n"
+        "CMBLOCK,PAD,NODE,        2\n(8i10)\n        21       -24\n"
+        "CMBLOCK,FACES,ELEM,       1\n(8i10)\n        31\n"
+    )
+
+
+@pytest.mark.parametrize("joined", [False, True])
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+@pytest.mark.parametrize("name", ["ds.dat", "ds.inp", "ds.cdb"])
+def test_what_workbench_writes(tmp_path, joined, end, name):
+    mesh = read(tmp_path, workbench(joined).replace("\n", end), name)
+    assert mesh.numbers.tolist() == [*NODES]
+    np.testing.assert_array_equal(mesh.nodes, [*NODES.values()])
+    assert mesh.surface("PAD").areas.tolist() == mesh.surface("FACES").areas.tolist()
+
+
+def test_bricks_of_20_nodes_without_their_count(tmp_path):
+    nodes, own = brick(range(8), True)
+    body = archive(nodes, [(7, 1, own)], {1: 95}, [("ALL", "NODE", [*nodes])])
+    head, _, rest = body.partition("EBLOCK,")
+    lines = [
+        "".join(f"{one:10d}" for one in part) for part in ([7, 1, 1, 1, 0, *own[:10]], own[10:])
+    ]
+    block = "EBLOCK,10,,,1\n(15i10)\n" + "\n".join(lines)
+    whole = read(tmp_path, body)
+    short = read(tmp_path, head + block + "\n        -1\n" + rest.partition("        -1\n")[2])
+    np.testing.assert_array_equal(whole.cells[0][1], short.cells[0][1])
+
+
+def test_elements_between_linear_and_quadratic_ones(tmp_path):
+    nodes, own = brick(range(8), True)
+    own[8] = 0
+    text = archive(nodes, [(7, 1, own)], {1: 186}, [("ALL", "NODE", [*nodes])])
+    with pytest.raises(ss.ModelError, match="element 7, at the outside, has some midside nodes"):
+        read(tmp_path, text)
+    # a tetrahedron with all its neighbours is inside
+    hull = np.array([[1.0, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])
+    nodes = {at: tuple(one) for at, one in enumerate([*hull.tolist(), *(-3 * hull).tolist()], 1)}
+    nodes[9] = (0.0, 0.0, 1.0)
+    around = [(at, 1, [*({1, 2, 3, 4} - {at}), 4 + at]) for at in range(1, 5)]
+    inner = (7, 2, [1, 2, 3, 4, 9, 0, 0, 0, 0, 0])
+    mesh = read(tmp_path, archive(nodes, [*around, inner], {1: 285, 2: 187}))
+    assert [(kind, len(own)) for kind, own in mesh.cells] == [("tetra", 5)]
+
+
+CHANGES = [
+    (
+        "NBLOCK,6,SOLID,        28,        16",
+        "NBLOCK,6,SOLID,        28,        17",
+        "17 nodes announced",
+    ),
+    (
+        "NBLOCK,6,SOLID,        28,        16",
+        "NBLOCK,6,SOLID,        27,        16",
+        "line 31: node 28 is above 27",
+    ),
+    (
+        "EBLOCK,19,SOLID,        31,         3",
+        "EBLOCK,19,SOLID,        31,         4",
+        "4 elements announced",
+    ),
+    ("EBLOCK,19,SOLID,        31,         3", "EBLOCK,19,SOLID,        x", "'x' stands where"),
+    (
+        "SEAT    ,NODE,       2",
+        "SEAT    ,NODE,       3",
+        "component SEAT: 3 numbers announced, 2 present",
+    ),
+    ("SEAT    ,NODE,       2", "SEAT    ,NODES", "'' stands where a whole number must be"),
+    ("SEAT    ,NODE", "SEAT    ,LINE", "neither of nodes nor of elements"),
+    ("         5        -8", "        -8         5", "-8 ends no range"),
+    ("         5        -8", "         5-999999999", "component SEAT: there is no node 9"),
+    ("(8i10)", "8i10", "'8i10' is no format"),
+    ("(19i10)", "(19i0)", "no format"),
+    ("(19i10)", "(9i10)", "the format is none of elements"),
+    ("(3i9,6e21.13e3)", "(3i9)", "the format is none of nodes"),
+    ("(3i9,6e21.13e3)", "(3i9,6e20.13)", "line"),
+    ("       28        0        0", "       27        0        0", "node 27 is given twice"),
+    ("ET,        2,185", "ET,        4,185", "element 10: no ET says what type 2 is"),
+    ("ET,        2,185", "ET,        2,187", "element 10, at the outside, has some midside nodes"),
+    (
+        "         8         0        10",
+        "         9         0        10",
+        "element 10 does not have the 9 nodes",
+    ),
+    (
+        "         8         0        10",
+        "       999         0        10",
+        "element 10 has 999 nodes",
+    ),
+    (
+        "         8         0        20",
+        "         8         0        10",
+        "element 10 is given twice",
+    ),
+    ("        27        28\n", "        27        29\n", "element 20: there is no node 29"),
+    ("        27        28\n", "        25        25\n", "element 20: corners coincide as in no"),
+    ("2.0000000000000E+000\n", "2.0000000000000E+0\n", "is cut short"),
+    ("2.0000000000000E+000\n", "2.0000000000000Q+000\n", "is no real number"),
+    ("NBLOCK", "NBLOCH", "it has no NBLOCK"),
+    (
+        "N,R5.3,LOC,       -1,",
+        "N,R5.3,LOC,       99,1.,2.,3.",
+        "N: one by one; write it with CDWRITE",
+    ),
+    ("EXTOPT,ATTR,", "NROTAT,ALL", "NROTAT changes selected nodes"),
+    ("EXTOPT,ATTR,", "TYPE,2\nE,1,2,3,4,5,6,7,8", "E: elements one by one"),
+]
+
+
+@pytest.mark.parametrize(("old", "new", "says"), CHANGES)
+def test_a_damaged_archive_is_refused_in_one_line(tmp_path, old, new, says):
+    text = joint()
+    assert old in text
+    with pytest.raises(ss.ModelError, match=r"joint\.cdb") as error:
+        read(tmp_path, text.replace(old, new))
+    assert says in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("/PREP7\nN,R5.3,LOC, 1, 0, 0, 0.5, 0.5, 0.5\n", "line 2: N: one by one"),
+        ("/PREP7\nEN,R5.5,ATTR, 8, 1, 1\n", "line 2: EN: one by one"),
+        ("/DECRYPT,ab\nx%&/\n", "it is encrypted; write it with CDWRITE"),
+        ("", "it has no NBLOCK; write it with CDWRITE"),
+        ("NBLOCK,6,SOLID,1,1", "line 1: the file ends inside a block"),
+        ("NBLOCK,6,SOLID\n(3i9,6e21.13e3)\n        1        0        0\n", "does not end"),
+    ],
+)
+def test_archives_in_other_forms_are_refused(tmp_path, text, says):
+    with pytest.raises(ss.ModelError) as error:
+        read(tmp_path, text)
+    assert says in str(error.value)
+
+
+def test_ranges_without_end_take_no_room(tmp_path):
+    long = "CMBLOCK,ALL     ,NODE,       2\n(8i10)\n         1-999999999\n"
+    for block in (long, long.replace("NODE", "ELEM")):
+        with pytest.raises(ss.ModelError, match=r"component ALL: there is no \w+ \d"):
+            read(tmp_path, joint() + block)
+
+
+def same(mesh, other):
+    """Return whether two meshes have the same nodes, cells and parts."""
+    if [kind for kind, _ in mesh.cells] != [kind for kind, _ in other.cells]:
+        return False
+    parts = [
+        (one.numbers, one.nodes, one.rotated, *(own for _, own in one.cells))
+        for one in (mesh, other)
+    ]
+    return all(map(np.array_equal, *parts))
+
+
+def test_a_line_of_a_block_lost_or_twice_is_refused(tmp_path):
+    lines = joint().splitlines(keepends=True)
+    whole = read(tmp_path, joint())
+    first, last = (
+        next(at for at, line in enumerate(lines) if line.startswith(name))
+        for name in ("NBLOCK", "EXTOPT")
+    )
+    refused = 0
+    for at in range(first, last):
+        for damaged in (lines[: at + 1] + lines[at:], lines[:at] + lines[at + 1 :]):
+            try:
+                mesh = read(tmp_path, "".join(damaged))
+            except ss.ModelError:
+                refused += 1
+                continue
+            assert same(mesh, whole), lines[at]
+            lost = {*whole.node_sets, *whole.surfaces} - {*mesh.node_sets, *mesh.surfaces}
+            # without its head a component is no part: whoever names it is told
+            assert all(name in lines[at] for name in lost), lines[at]
+            for name in whole.node_sets.keys() - lost:
+                np.testing.assert_array_equal(mesh.node_sets[name], whole.node_sets[name])
+    assert refused > 1.2 * (last - first)
+
+
+@pytest.mark.slow
+def test_whatever_is_damaged_counts_hold_and_one_line_says_so(tmp_path):
+    text = joint()
+    whole, refused, other = read(tmp_path, text), [], 0
+    for seed in range(2000):
+        damaged = mutated(text.encode(), random.Random(seed))
+        try:
+            mesh = read(tmp_path, damaged)
+        except ss.ModelError as error:
+            refused.append(str(error))
+            continue
+        if same(mesh, whole):
+            continue
+        other += 1
+        # digits that became others: as many nodes and elements as the heads say
+        said = damaged.decode("latin-1")
+        for head, present in (("NBLOCK", len(mesh.nodes)), ("EBLOCK", None)):
+            counts = re.findall(rf"^{head},\d+,SOLID,[ \d]*,([ \d]+)$", said, re.M)
+            assert not counts or present in (None, sum(map(int, counts))), seed
+    assert all("\n" not in one and "joint.cdb" in one for one in refused)
+    assert len(refused) > 1000
+    assert other < 60
