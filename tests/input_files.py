@@ -12,6 +12,7 @@ import scipy.io
 import scipy.sparse
 
 import stickslip as ss
+from archives import archive
 from stickslip.analyses.pattern_store import Key, PatternStore, Row
 from stickslip.io import Frf, read_dofs, read_frf, read_matrix, write_frf
 
@@ -48,6 +49,13 @@ harmonics = 3
 levels = [0.5, 1.0]
 """
 
+JOINT = (
+    {number: tuple(place) for number, place in enumerate(np.eye(3).tolist(), 5)} | {9: (0.0,) * 3},
+    [(3, 1, [9, 5, 6, 7])],
+    {1: 285},
+    [("SEAT", "NODE", [5, 6, 7])],
+)
+"""Nodes, elements, types and components of an archive of ANSYS."""
 IDENTITY = {"omega": [1.0, 2.0], "seed": 3}
 
 
@@ -89,6 +97,9 @@ def make(folder: Path) -> dict[str, Callable[[Path], object]]:
         "        2       3       -1.25D+5\n"
         "DMIG,STIF,2,3,,2,3,4.0E5\n"
     )
+    (folder / "joint.cdb").write_text(archive(*JOINT))
+    mapping = ["    Matrix Eqn          Node    DOF     ", "             1             4    UX  "]
+    (folder / "rows.mapping").write_text("\n".join([*mapping, ""]))
     write_frf(folder / "frf.uff", [Frf([1.0, 2.0, 3.5], [1.0, 1j, 2.0], "1.1", "2.3")] * 2)
     (folder / "study.toml").write_text(STUDY)
     study = ss.study.Study.load(folder / "study.toml")
@@ -102,6 +113,8 @@ def make(folder: Path) -> dict[str, Callable[[Path], object]]:
     _nastran(folder, readers)
     return readers | {
         "bar.dof": read_dofs,
+        "rows.mapping": read_dofs,
+        "joint.cdb": _mesh,
         "frf.uff": lambda path: [(one.dof, one.omega, one.values) for one in read_frf(path)],
         "study.toml": lambda path: ss.study.Study.load(path).tables.model_dump_json(),
         "result.nc": _result,
@@ -131,6 +144,11 @@ def _nastran(folder: Path, readers: dict[str, Callable[[Path], object]]) -> None
 def _matrix(path: Path) -> object:
     key = "K" if path.name in ("two.npz", "full4.mat", "full5.mat") else None
     return read_matrix(path, key)
+
+
+def _mesh(path: Path) -> object:
+    mesh = ss.read_mesh(path)
+    return [(None, *mesh.cells[0][1], *(mesh.nodes[own] for own in mesh.node_sets.values()))]
 
 
 def _result(path: Path) -> object:

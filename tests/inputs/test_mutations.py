@@ -26,6 +26,7 @@ COUNTED = [
     "dense-text.op4",
     "bigmat-text.op4",
     "nonbigmat-text.op4",
+    "rows.mapping",
     "frf.uff",
 ]
 """Text of which lines are counted by something that the file says."""
@@ -113,6 +114,6 @@ def test_every_kind_of_file_is_among_them(sound):
     from stickslip.io.matrices import _READERS
 
     endings = {Path(name).suffix for name in sound[1]} | {".mtx.gz"}
-    alike = {".hb", ".rb", ".rsa", ".hbf", ".psa", ".dmig", ".mas"}
+    alike = {".hb", ".rb", ".rsa", ".hbf", ".psa", ".matrix", ".dmig", ".mas"}
     missing = set(_READERS) - endings - alike - {".full"}
     assert missing <= {".op4"}

@@ -32,11 +32,13 @@ def read_mesh(
         The file. Of a deck, `.inp` of CalculiX or Abaqus without parts and instances, node sets
         and surfaces are read, too, their names in capitals; solids C3D4, C3D6, C3D8, C3D10, C3D15
         and C3D20 and shells S3 to S8 with all that is added to their names, others are left out.
+        Of ANSYS, `.cdb` of CDWRITE and `.dat` of Workbench, components of nodes are node sets,
+        those of shells and of contact and surface elements are surfaces.
         Other files, `.bdf` (Nastran), `.msh` (Gmsh), `.vtu`, need the package meshio. Of Nastran's
         bulk data the nodes of every `SET1` are a node set, "SET1 7" by its number.
     numbers : array_like of int, optional
         Numbers of the nodes in the order of the file. Default: those of the file in `.inp`,
-        `.bdf`, `.nas` and `.fem`, otherwise 1, 2, ...
+        `.cdb`, `.dat`, `.bdf`, `.nas` and `.fem`, otherwise 1, 2, ...
     units : str, optional
         Mass, length and time of the file, as of `Structure`: with "t-mm-s" coordinates in
         millimetres become metres. Areas of contacts, whose stiffness is in N/m3, need metres.
@@ -55,6 +57,7 @@ def read_mesh(
     References
     ----------
     Dhondt, "CalculiX CrunchiX User's Manual", keywords *NODE, *ELEMENT, *NSET, *ELSET, *SURFACE.
+    ANSYS, Inc., "Mechanical APDL Programmer's Reference", "Coded Database File Commands".
     MSC Nastran, "Quick Reference Guide", bulk data entries GRID and SET1.
     """
     file = file_path(path, "path")
