@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
@@ -65,7 +65,7 @@ def outside(cells: Sequence[tuple[str, Places]], points: Matrix) -> list[Places]
     every = [*found, *shells]
     if not every:
         return []
-    keys = np.vstack(list(map(corner_keys, every)))
+    keys = np.vstack(list(map(_corners, every)))
     _, first, place = np.unique(keys, axis=0, return_index=True, return_inverse=True)
     place, count = place.ravel(), sum(map(len, found))
     of_solids = np.bincount(place[:count], minlength=len(first))
@@ -95,12 +95,17 @@ def face_count(kind: str) -> int:
     return len(_FACES[KINDS[kind]])
 
 
-def corner_keys(faces: Places) -> Places:
+def _corners(faces: Places) -> Places:
     """Return the corners of faces in ascending order, (m, 4), of triangles after a -1."""
     corners = faces[:, : 4 if faces.shape[1] in (4, 8) else 3]
     padded = np.full((len(faces), 4), -1)
     padded[:, 4 - corners.shape[1] :] = corners
     return np.sort(padded, axis=1)
+
+
+def keys_of(faces: Places) -> Iterator[tuple[int, ...]]:
+    """Give what tells each face from others, whatever its order: its corners."""
+    return map(tuple, _corners(faces).tolist())
 
 
 def by_size(faces: Iterable[Places]) -> tuple[Places, ...]:

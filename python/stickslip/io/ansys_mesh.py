@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable
 from functools import cached_property
 
 import numpy as np
 
-from stickslip.fe.faces import by_size, corner_keys, element_faces, face_count, outside
+from stickslip.fe.faces import by_size, element_faces, face_count, keys_of, outside
 from stickslip.fe.mesh import Mesh
 from stickslip.fe.surface import Places
 from stickslip.io.ansys_elements import Cells, cells_of, is_on_surface, is_shell, most_nodes
@@ -72,11 +72,11 @@ class _Places:
         partly = [at for at, block in enumerate(self.blocks) if block.partly]
         if not partly:
             return
-        outer = {key for faces in outside(self.cells, self.points) for key in _keys(faces)}
+        outer = {key for faces in outside(self.cells, self.points) for key in keys_of(faces)}
         for at in partly:
             kind, own = self.cells[at]
             for number in range(1, face_count(kind) + 1):
-                keys = _keys(element_faces(kind, own, number, self.points))
+                keys = keys_of(element_faces(kind, own, number, self.points))
                 for label, key in zip(self.blocks[at].labels, keys, strict=True):
                     if key in outer:
                         raise ValueError(
@@ -110,7 +110,9 @@ class _Places:
         shells = ("triangle", "quad", "triangle6", "quad8")
         solids = [one for one in self.cells if one[0] not in shells]
         every = (faces for faces in outside(solids, self.points))
-        return {key: face for faces in every for key, face in zip(_keys(faces), faces, strict=True)}
+        return {
+            key: face for faces in every for key, face in zip(keys_of(faces), faces, strict=True)
+        }
 
     def corners(self, nodes: list[int]) -> tuple[int, ...]:
         """Return the corners of an element on a surface as those of faces are ordered."""
@@ -118,10 +120,6 @@ class _Places:
         count = 3 if len(nodes) in (3, 6) else 4
         own = sorted({self.position.get(node, -1) for node in nodes[:count]})
         return (-1, *own) if len(own) == 3 else tuple(own)
-
-
-def _keys(faces: Places) -> Iterator[tuple[int, ...]]:
-    return map(tuple, corner_keys(faces).tolist())
 
 
 def _members(name: str, what: str, members: Iterable[range], known: Collection[int]) -> list[int]:

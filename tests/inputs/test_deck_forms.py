@@ -1,0 +1,115 @@
+"""Decks as programs write them in other ways that their manuals allow."""
+
+import os
+
+import pytest
+
+import stickslip as ss
+from decks import DECK, deck
+
+AREAS = {"SEAT": 6.0, "PAD": 6.0, "FEET": 6.0, "ENDS": 12.0, "POINTS": 6.0}
+
+
+def found(mesh):
+    kinds = {kind: len(own) for kind, own in mesh.cells}
+    names = sorted({*mesh.surfaces, *mesh.node_sets} - {"ALL"})
+    return [len(mesh.nodes), kinds, {name: mesh.surface(name).area for name in names}]
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        # a blank coordinate is 0, and does not shift the next ones
+        (" 5, 0,0,1", " 5, ,,1"),
+        (" 8, 0,3,1", " 8,\t0.D0, .3+1 ,1.0d+00,"),
+        ("*ELEMENT, TYPE=C3D8, ELSET=LOW", "*ELEMENT, TYPE=C3D8,\n ELSET = LOW"),
+        ("*NSET, NSET=FEET, GENERATE", "*NSET, NSET=FEET,\nGENERATE"),
+        ("1, 4\n", "1, 4, 1,\n"),
+        ("*NSET, NSET=ENDS", '*NSET, UNSORTED, NSET="Ends"'),
+        ("type=C3D8R", "TYPE=SC8R"),
+        ("type=C3D8R", "TYPE=CSS8"),
+        ("31, 32, 33, 34\n*STEP", "31, 1.0\n32, 1.\n33\n34,\n*STEP"),
+        ("20, S1", "HIGH, S1"),
+        ("*STEP\n", "*SYSTEM\n*STEP\n"),
+        ("\n", "\r\n"),
+        ("\n", "\n** a comment\n"),
+    ],
+)
+def test_other_forms_of_the_same(tmp_path, old, new):
+    assert old in DECK
+    nodes, kinds, areas = found(ss.read_mesh(deck(tmp_path, DECK.replace(old, new))))
+    assert (nodes, kinds) == (16, {"hexahedron": 2})
+    assert areas == pytest.approx(AREAS)
+
+
+def test_rows_in_files_of_their_own(tmp_path):
+    head, _, rest = DECK.partition("*NODE, NSET=ALL\n")
+    rows, _, rest = rest.partition("*ELEMENT")
+    (tmp_path / "Nodes.txt").write_text(rows)
+    (tmp_path / "sets.inp").write_text("*NSET, NSET=LOWER, ELSET=LOW\n")
+    text = f"{head}*NODE, NSET=ALL, INPUT=Nodes.txt\n*ELEMENT{rest}".replace(
+        "*STEP", "*INCLUDE, INPUT='sets.inp'\n*STEP"
+    )
+    mesh = ss.read_mesh(deck(tmp_path, text))
+    assert len(mesh.node_sets["ALL"]) == 16
+    assert mesh.numbers[mesh.node_sets["LOWER"]].tolist() == [*range(1, 9)]
+    (tmp_path / "sets.inp").unlink()
+    with pytest.raises(ss.ModelError, match=r"no file sets\.inp, which it includes"):
+        ss.read_mesh(tmp_path / "joint.inp")
+    os.mkfifo(tmp_path / "sets.inp")
+    with pytest.raises(ss.ModelError, match=r"sets\.inp"):
+        ss.read_mesh(tmp_path / "joint.inp")
+
+
+def test_solids_without_a_face_are_their_outside(tmp_path):
+    mesh = ss.read_mesh(deck(tmp_path, DECK.replace("LOW, S2", "LOW")))
+    assert mesh.surface("SEAT").area == pytest.approx(22.0)
+    # one body: the face between two elements is none
+    text = DECK.replace("21,22,23,24,31", "5,6,7,8,31").replace("LOW, S2", "LOW")
+    mesh = ss.read_mesh(deck(tmp_path, text))
+    assert mesh.surface("SEAT").area == pytest.approx(16.0)
+
+
+def test_pyramids_and_triangles(tmp_path):
+    more = "*ELEMENT, TYPE=C3D5\n40, 31,32,33,34,41\n*ELEMENT, TYPE=STRI3\n50, 1, 2, 41\n"
+    text = DECK.replace("*ELEMENT, TYPE=C3D8,", f" 41, 1,1.5,4\n{more}*ELEMENT, TYPE=C3D8,", 1)
+    text = text.replace("20, S1", "40, S1").replace(
+        "POINTS, TYPE=NODE", "TOP\n40, S2\n*NSET, NSET=P"
+    )
+    mesh = ss.read_mesh(deck(tmp_path, text))
+    assert {kind: len(own) for kind, own in mesh.cells} == {
+        **{"pyramid": 1, "triangle": 1, "hexahedron": 2}
+    }
+    assert mesh.surface("PAD").normals[:, 2] == pytest.approx(-1.0)
+    assert [one.shape for one in mesh.surface("TOP").faces] == [(1, 3)]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ("*STEP", "*NGEN\n1, 4, 1\n*STEP", "*NGEN: write all nodes, elements"),
+        ("*STEP", "*ELGEN\n10, 2, 4, 1\n*STEP", "*ELGEN: write all nodes"),
+        ("*STEP", "*NCOPY, OLD SET=ALL, CHANGE NUMBER=100, SHIFT\n0,0,5\n*STEP", "*NCOPY"),
+        ("*NODE,", "*SYSTEM\n1., 0., 0.\n*NODE,", "*SYSTEM: write"),
+        ("type=C3D8R", "type=C3D27", "TYPE=C3D27: solids that are not known here"),
+        ("1, 4\n", "4, 1\n", "[4, 1] is no range"),
+        ("31, 32, 33, 34\n*STEP", "31, 1\n*STEP", "is 1 a node? give one a line"),
+        ("*STEP", "*NSET, NSET=X, ELSET=LOV\n*STEP", "unknown ELSET 'LOV'"),
+        ("*STEP", "*NSET, NSET=X, ELSET=SPRINGS\n*STEP", "unknown ELSET"),
+        ("*STEP", "*ELSET, ELSET=S\n30,\n*NSET, NSET=X, ELSET=S\n*STEP", "element 30 has no faces"),
+        ("*STEP", "*TRANSFORM, NSET=FEAT\n0,0,0,0,0,1\n*STEP", "unknown set 'FEAT'"),
+    ],
+)
+def test_what_would_be_lost_is_refused(tmp_path, old, new, says):
+    assert old in DECK
+    with pytest.raises(ss.ModelError, match=r"joint\.inp") as error:
+        ss.read_mesh(deck(tmp_path, DECK.replace(old, new)))
+    assert says in str(error.value)
+
+
+def test_directions_of_transformed_nodes_are_not_x_y_z(tmp_path):
+    text = DECK.replace("*STEP", "*TRANSFORM, NSET=FEET, TYPE=C\n0,0,0, 0,0,1\n*STEP")
+    mesh = ss.read_mesh(deck(tmp_path, text))
+    assert mesh.surface("SEAT").area == pytest.approx(6.0)
+    with pytest.raises(ss.ModelError, match="node 1 has directions of its own"):
+        mesh.surface("FEET")
