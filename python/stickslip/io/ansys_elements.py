@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
-from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
+
+from stickslip.io.cells import Cells, Numbers, with_middles
 
 _BRICKS = (5, 45, 46, 62, 64, 65, 69, 70, 73, 96, 97, 107, 164, 185, 190, 215, 278)
 _BRICKS_20 = (89, 90, 95, 122, 186, 191, 216, 226, 231, 236, 239, 279)
@@ -38,23 +38,6 @@ _KINDS: dict[str, tuple[list[int], list[int]]] = {
     "quad": ([*range(4)], [*range(4, 8)]),
 }
 """Corners and nodes between them of bricks and shells, for each shape that they can have."""
-_QUADRATIC = {
-    **{"tetra": "tetra10", "pyramid": "pyramid13", "wedge": "wedge15"},
-    **{"hexahedron": "hexahedron20", "triangle": "triangle6", "quad": "quad8"},
-}
-
-Numbers: TypeAlias = NDArray[np.int64]
-
-
-@dataclass(frozen=True)
-class Cells:
-    """Elements of one kind of a mesh, by their numbers and those of their nodes."""
-
-    kind: str
-    labels: Numbers
-    nodes: Numbers
-    partly: bool = False
-    """Whether they have some of the nodes between their corners, which are left out here."""
 
 
 def most_nodes(element: int) -> int:
@@ -82,7 +65,7 @@ def cells_of(labels: Numbers, element: int, nodes: Iterable[list[int]]) -> Itera
             raise ValueError(f"element {labels[row]} has {len(own)} nodes, of type {element}")
         table[row, : len(own)] = own
     if family == "tetrahedron":
-        yield from _with_middles("tetra", labels, table[:, :4], table[:, 4:])
+        yield from with_middles("tetra", labels, table[:, :4], table[:, 4:])
         return
     if family == "shell":
         table[:, 3] = np.where(table[:, 3] == 0, table[:, 2], table[:, 3])
@@ -90,7 +73,7 @@ def cells_of(labels: Numbers, element: int, nodes: Iterable[list[int]]) -> Itera
         first, between = _KINDS[kind]
         chosen = table[those]
         middles = chosen[:, between] if most > corners else chosen[:, :0]
-        yield from _with_middles(kind, labels[those], chosen[:, first], middles)
+        yield from with_middles(kind, labels[those], chosen[:, first], middles)
 
 
 def _shapes(table: Numbers, family: str) -> Iterator[tuple[str, NDArray[np.bool_]]]:
@@ -103,22 +86,3 @@ def _shapes(table: Numbers, family: str) -> Iterator[tuple[str, NDArray[np.bool_
     wedge = same & ~top & (table[:, 6] == table[:, 7])
     yield from (("tetra", same & top), ("pyramid", ~same & top), ("wedge", wedge))
     yield "hexahedron", ~(top | wedge)
-
-
-def _with_middles(
-    kind: str, labels: Numbers, corners: Numbers, middles: Numbers
-) -> Iterator[Cells]:
-    """Give elements with all, without any, and with some of the nodes between their corners."""
-    ordered = np.sort(corners, axis=1)
-    odd = np.flatnonzero((ordered[:, 0] < 1) | (ordered[:, 1:] == ordered[:, :-1]).any(axis=1))
-    if odd.size:
-        raise ValueError(
-            f"element {labels[odd[0]]}: corners coincide as in no wedge, pyramid or tetrahedron"
-        )
-    there = middles != 0
-    some, whole = there.any(axis=1), there.all(axis=1)
-    if middles.shape[1]:
-        yield Cells(_QUADRATIC[kind], labels[whole], np.hstack([corners, middles])[whole])
-    yield Cells(kind, labels[~some], corners[~some])
-    partly = some & ~whole
-    yield Cells(kind, labels[partly], corners[partly], partly=True)

@@ -7,11 +7,12 @@ from functools import cached_property
 
 import numpy as np
 
-from stickslip.fe.faces import by_size, element_faces, face_count, keys_of, outside
+from stickslip.fe.faces import by_size, keys_of, outside
 from stickslip.fe.mesh import Mesh
 from stickslip.fe.surface import Places
-from stickslip.io.ansys_elements import Cells, cells_of, is_on_surface, is_shell, most_nodes
+from stickslip.io.ansys_elements import cells_of, is_on_surface, is_shell, most_nodes
 from stickslip.io.archive import Archive
+from stickslip.io.cells import Assembly, Cells
 
 
 def mesh_of_archive(archive: Archive) -> Mesh:
@@ -20,9 +21,7 @@ def mesh_of_archive(archive: Archive) -> Mesh:
     Components of nodes are sets of nodes. Those of shells, and of elements that all lie on faces at
     the outside of solids, are surfaces.
     """
-    blocks = [block for block in _blocks(archive) if block.labels.size]
-    made = _Places(archive, blocks)
-    made.require_whole_faces()
+    made = _Components(archive, list(_blocks(archive)))
     sets, surfaces = {}, {}
     for name, (kind, members) in archive.components.items():
         if kind == "NODE":
@@ -30,58 +29,16 @@ def mesh_of_archive(archive: Archive) -> Mesh:
             sets[name] = np.array([made.position[one] for one in numbers], np.int64)
         elif found := made.surface(_members(name, "element", members, archive.elements)):
             surfaces[name] = found
-    kinds = dict.fromkeys(kind for kind, _ in made.cells)
-    cells = tuple((kind, np.vstack([o for k, o in made.cells if k == kind])) for kind in kinds)
     turned = [made.position[one] for one in archive.rotated]
-    return Mesh(made.points, cells, made.labels, sets, surfaces, turned)
+    return Mesh(made.points, made.by_kind, made.labels, sets, surfaces, turned)
 
 
-class _Places:
-    """Nodes and elements by positions."""
+class _Components(Assembly):
+    """A model whose elements may make surfaces."""
 
     def __init__(self, archive: Archive, blocks: list[Cells]) -> None:
-        self.archive, self.blocks = archive, blocks
-        self.labels = np.fromiter(archive.nodes, np.int64, len(archive.nodes))
-        self.points = np.array(list(archive.nodes.values()))
-        self.cells = [(block.kind, self.of_block(block)) for block in blocks]
-
-    @cached_property
-    def position(self) -> dict[int, int]:
-        """Of each node, by its number."""
-        return {number: at for at, number in enumerate(self.archive.nodes)}
-
-    def of_block(self, block: Cells) -> Places:
-        """Return the positions of the nodes of elements."""
-        order = np.argsort(self.labels)
-        known = self.labels[order]
-        at = np.searchsorted(known, block.nodes).clip(max=len(known) - 1)
-        lost = np.argwhere(known[at] != block.nodes)
-        if lost.size:
-            row, column = lost[0]
-            raise ValueError(
-                f"element {block.labels[row]}: there is no node {block.nodes[row, column]}"
-            )
-        found: Places = order[at]
-        return found
-
-    def require_whole_faces(self) -> None:
-        """Refuse faces at the outside with some of the nodes between their corners.
-
-        Inside a body such elements lead from linear to quadratic ones, and have no contact.
-        """
-        partly = [at for at, block in enumerate(self.blocks) if block.partly]
-        if not partly:
-            return
-        outer = {key for faces in outside(self.cells, self.points) for key in keys_of(faces)}
-        for at in partly:
-            kind, own = self.cells[at]
-            for number in range(1, face_count(kind) + 1):
-                keys = keys_of(element_faces(kind, own, number, self.points))
-                for label, key in zip(self.blocks[at].labels, keys, strict=True):
-                    if key in outer:
-                        raise ValueError(
-                            f"element {label}, at the outside, has some midside nodes, not all"
-                        )
+        super().__init__(archive.nodes, blocks)
+        self.archive = archive
 
     def surface(self, numbers: list[int]) -> tuple[Places, ...] | None:
         """Return the faces of a component of elements; None: it is no surface."""
