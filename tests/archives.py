@@ -2,6 +2,13 @@
 
 import numpy as np
 
+CORNERS = ((0, 0), (2, 0), (2, 3), (0, 3))
+AROUND = [(0, 1), (1, 2), (2, 3), (3, 0)]
+EDGES = [*AROUND, *((a + 4, b + 4) for a, b in AROUND), *((a, a + 4) for a in range(4))]
+"""Of a brick, in the order of the nodes between its corners."""
+PLACES = np.array([[x, y, z] for z in (0, 1) for x, y in CORNERS], float)
+PLACES[4:, :2] = PLACES[4:, :2] * 0.75 + 0.25
+"""Corners of a brick, the upper ones shifted."""
 _COMPONENT = {"NODE": "node", "ELEM": "element"}
 
 
@@ -86,3 +93,15 @@ def ranges(numbers):
     for part in np.split(given, ends + 1):
         packed += [int(part[0])] if len(part) == 1 else [int(part[0]), -int(part[-1])]
     return packed
+
+
+def brick(corners, middles):
+    """Return nodes and element of a brick; edges that coincide have one node between them."""
+    nodes = {1 + at: PLACES[at].tolist() for at in sorted({*corners})}
+    own, between = [1 + at for at in corners], {}
+    for ends in [{corners[a], corners[b]} for a, b in EDGES] if middles else ():
+        one, other = min(ends), max(ends)
+        number = between.setdefault((one, other), 101 + len(between)) if one < other else 1 + one
+        nodes[number] = ((PLACES[one] + PLACES[other]) / 2).tolist()
+        own.append(number)
+    return nodes, own

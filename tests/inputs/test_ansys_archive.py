@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from archives import archive
+from archives import PLACES, archive, brick
 from mutations import mutated
 
 CORNERS = ((0, 0), (2, 0), (2, 3), (0, 3))
@@ -77,29 +77,12 @@ def test_units_and_numbers(tmp_path):
     assert renumbered.surface("PAD").labels.tolist() == [109, 110, 111, 112]
 
 
-AROUND = [(0, 1), (1, 2), (2, 3), (3, 0)]
-EDGES = [*AROUND, *((a + 4, b + 4) for a, b in AROUND), *((a, a + 4) for a in range(4))]
-"""Of a brick, in the order of the nodes between its corners."""
 SHAPES = {
     "tetra": ([0, 1, 2, 2, 4, 4, 4, 4], ("C3D4", "C3D10")),
     "wedge": ([0, 1, 2, 2, 4, 5, 6, 6], ("C3D6", "C3D15")),
     "hexahedron": ([*range(8)], ("C3D8", "C3D20R")),
     "pyramid": ([0, 1, 2, 3, 4, 4, 4, 4], None),
 }
-PLACES = np.array([[x, y, z] for z in (0, 1) for x, y in CORNERS], float)
-PLACES[4:, :2] = PLACES[4:, :2] * 0.75 + 0.25
-
-
-def brick(corners, middles):
-    """Return nodes and element of a brick; edges that coincide have one node between them."""
-    nodes = {1 + at: PLACES[at].tolist() for at in sorted({*corners})}
-    own, between = [1 + at for at in corners], {}
-    for ends in [{corners[a], corners[b]} for a, b in EDGES] if middles else ():
-        one, other = min(ends), max(ends)
-        number = between.setdefault((one, other), 101 + len(between)) if one < other else 1 + one
-        nodes[number] = ((PLACES[one] + PLACES[other]) / 2).tolist()
-        own.append(number)
-    return nodes, own
 
 
 @pytest.mark.parametrize("shape", SHAPES)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from decks import DECK, deck
+from decks import DECK, bulk_data, deck
 
 
 def test_a_deck_in_millimetres_becomes_metres(tmp_path):
@@ -141,28 +141,8 @@ def test_what_does_not_exist_is_named(tmp_path):
         assert "\n" not in str(error.value)
 
 
-def bulk_data(wide: bool, system: str = "") -> str:
-    """Return two bricks of Nastran, one upon the other, with the nodes between them in sets."""
-    lines, corners = ["SOL 103", "CEND", "BEGIN BULK"], ((0, 0), (2, 0), (2, 3), (0, 3))
-    for base, height in ((10, 0.0), (20, 1.0)):
-        ids = range(base + 1, base + 9)
-        places = [(x, y, height + z) for z in (0.0, 1.0) for x, y in corners]
-        for number, (x, y, z) in zip(ids, places, strict=True):
-            if wide:
-                lines.append(f"GRID*   {number:16d}{system:>16}{x:16.8f}{y:16.8f}*G{number}")
-                lines.append(f"*G{number:<6d}{z:16.8f}")
-            else:
-                lines.append(f"GRID    {number:8d}{system:>8}{x:8.3f}{y:8.3f}{z:8.3f}")
-        own = "".join(f"{number:8d}" for number in ids)
-        lines += [f"CHEXA   {base:8d}{1:8d}{own[:48]}+", f"+       {own[48:]}"]
-    first = f"SET1    {2:8d}{21:8d}{22:8d}{23:8d}".ljust(72)
-    lines += ["$ between them", "SET1,1,15,THRU,18", f"{first}+S"]
-    return "\n".join([*lines, f"+S      {24:8d}", "SET1,3,10,20", "ENDDATA", ""])
-
-
 @pytest.mark.parametrize("wide", [False, True])
 def test_sets_of_nastran_make_an_interface(tmp_path, wide):
-    pytest.importorskip("meshio")
     path = tmp_path / "joint.bdf"
     path.write_text(bulk_data(wide))
     mesh = ss.read_mesh(path)
@@ -175,7 +155,6 @@ def test_sets_of_nastran_make_an_interface(tmp_path, wide):
 
 
 def test_coordinates_of_another_system_of_nastran_are_refused(tmp_path):
-    pytest.importorskip("meshio")
     path = tmp_path / "joint.bdf"
     path.write_text(bulk_data(False, system="4"))
     with pytest.raises(ss.ModelError, match="GRID 11: its coordinates are those of system 4"):
@@ -183,7 +162,6 @@ def test_coordinates_of_another_system_of_nastran_are_refused(tmp_path):
 
 
 def test_a_set_of_more_numbers_than_nodes_takes_no_room(tmp_path):
-    pytest.importorskip("meshio")
     path = tmp_path / "joint.bdf"
     path.write_text(bulk_data(False).replace("SET1,1,15,THRU,18", "SET1,1,15,THRU,999999999999"))
     assert sorted(ss.read_mesh(path).node_sets) == ["SET1 2"]
@@ -201,7 +179,6 @@ def test_a_set_of_more_numbers_than_nodes_takes_no_room(tmp_path):
     ],
 )
 def test_a_spoilt_entry_of_nastran_is_refused(tmp_path, entry):
-    pytest.importorskip("meshio")
     path = tmp_path / "joint.bdf"
     path.write_text(bulk_data(False).replace("SET1,1,15,THRU,18", entry))
     with pytest.raises(ss.ModelError, match=r"joint\.bdf"):
