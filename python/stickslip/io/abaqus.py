@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stickslip.checks import is_file
-from stickslip.io.entries import Labelled, Sparse, node_names, square_matrix
+from stickslip.io.entries import Labelled, Sparse, node_names, square_matrix, whole_matrix
 from stickslip.io.numbers import counted, entry_table, real_field
 from stickslip.io.source import Key, read_text
 
@@ -40,22 +43,35 @@ def read_abaqus(path: Path, key: Key) -> Labelled:
     words = len(body.lstrip().partition("\n")[0].replace(",", " ").split())
     if not words:
         raise ValueError("the file holds no entries")
+    heads = "".join(line.upper().replace(" ", "") for line in lines if line.startswith("*"))
+    make = _whole if "TYPE=UNSYMMETRIC" in heads else square_matrix
     if words == 3:
-        return Labelled(_of_places(body), None)
+        return Labelled(_of_places(body, make), None)
     if words == 5:
-        return _of_nodes(entry_table(body, 5))
+        return _of_nodes(entry_table(body, 5), make)
     raise ValueError(f"a line holds {words} numbers; 3 or 5 are known, and MatrixMarket files")
 
 
-def _of_places(text: str) -> Sparse:
+_Make: TypeAlias = Callable[[Any, Any, NDArray[np.float64], int], Sparse]
+"""What makes a matrix of rows, columns, values and its size."""
+
+
+def _whole(rows: Any, columns: Any, values: NDArray[np.float64], size: int) -> Sparse:
+    """Return a matrix that is said not to be given by a triangle."""
+    return whole_matrix((size, size), rows, columns, values, "general")
+
+
+def _of_places(text: str, make: _Make = square_matrix) -> Sparse:
     """Return the matrix of lines of row, column, value."""
     table = entry_table(text, 3)
     rows, columns = counted(table[:, 0], "row") - 1, counted(table[:, 1], "column") - 1
     size = int(max(rows.max(), columns.max())) + 1
-    return square_matrix(rows, columns, table[:, 2], size)
+    return make(rows, columns, table[:, 2], size)
 
 
-def _of_nodes(table: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> Labelled:
+def _of_nodes(
+    table: np.ndarray[tuple[int, int], np.dtype[np.float64]], make: _Make = square_matrix
+) -> Labelled:
     """Return the matrix of lines of row node, direction, column node, direction, value."""
     # Abaqus numbers the internal nodes of its elements 0 and below.
     if (table[:, [0, 2]] < 1).any():
@@ -63,7 +79,7 @@ def _of_nodes(table: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> Label
     labels = counted(table[:, :4].ravel(), "node or direction").reshape(-1, 2)
     names, place = np.unique(labels, axis=0, return_inverse=True)
     rows, columns = place.reshape(-1, 2).T
-    matrix = square_matrix(rows, columns, table[:, 4], len(names))
+    matrix = make(rows, columns, table[:, 4], len(names))
     return Labelled(matrix, node_names(names[:, 0], names[:, 1]))
 
 

@@ -13,14 +13,17 @@ from stickslip.errors import ModelError
 from stickslip.io.numbers import real_field
 from stickslip.io.source import readable
 
+_WORDS_OF_HEADS = re.compile(r"[^-+.,;0-9eEdD\s]")
+"""What a line before the first number has, and none of numbers."""
 _WORDS = {2: "two numbers", 3: "three numbers"}
 
 
 def read_curve(path: str | PathLike[str], columns: int = 2) -> tuple[NDArray[np.float64], ...]:
     """Read the first columns of a text file, two or three, as CSV files have them.
 
-    Fields are separated by commas, semicolons, tabs or spaces. Lines before the first number, and
-    lines that begin with # or %, are passed over.
+    Fields are separated by commas, semicolons, tabs or spaces. Where something else separates them,
+    a comma is a decimal point: 20,5;0,0012. Lines before the first number, and lines that begin
+    with # or %, are passed over.
 
     Parameters
     ----------
@@ -44,18 +47,39 @@ def read_curve(path: str | PathLike[str], columns: int = 2) -> tuple[NDArray[np.
     with readable(file, "a table of numbers"):
         text = file.read_text(encoding="utf-8-sig")
     for number, line in enumerate(text.splitlines(), 1):
-        fields = re.split(r"[,;\s]+", line.strip().strip(",;"))
-        if not fields[0] or fields[0][0] in "#%":
+        fields = _fields(line.strip())
+        if not line.strip() or line.strip()[0] in "#%":
             continue
         try:
             if len(fields) < columns:
                 raise ValueError(f"{len(fields)} number")
-            rows.append([real_field(field) for field in fields[:columns]])
+            if not all(fields[:columns]):
+                raise ValueError("an empty field")
+            rows.append([_number(field) for field in fields[:columns]])
         except ValueError as error:
-            if rows:
+            if rows or (len(fields) >= columns and not _WORDS_OF_HEADS.search(line)):
                 raise ModelError(
                     f"{file}: line {number}: {error}; give {_WORDS[columns]} per line"
                 ) from None
     if not rows:
         raise ModelError(f"{file}: no line with {_WORDS[columns]}; give numbers in columns")
     return tuple(np.ascontiguousarray(one) for one in np.array(rows).T)
+
+
+def _fields(line: str) -> list[str]:
+    """Return the fields of a line; commas in them are decimal points."""
+    if ";" in line:
+        fields = line.rstrip(";").split(";")
+    elif "," in line and (re.search(r",\s|\s,|,$", line) or len(line.split()) == 1):
+        fields = line.rstrip(",").split(",")
+    else:
+        fields = line.split()
+    return [field.strip() for field in fields]
+
+
+def _number(field: str) -> float:
+    if "," not in field:
+        return real_field(field)
+    if "." in field or field.count(",") > 1:
+        raise ValueError(f"{field[:40]!r} has a comma beside a point")
+    return real_field(field.replace(",", "."))

@@ -33,7 +33,12 @@ Quantity: TypeAlias = Literal["displacement", "velocity", "acceleration"]
 
 _QUANTITIES = {8: "displacement", 11: "velocity", 12: "acceleration"}
 _DERIVATIVES = {"displacement": 0, "velocity": 1, "acceleration": 2}
-_FREQUENCY, _FORCE, _FRF = 18, 13, 4
+_FREQUENCY, _FORCE, _FRF, _UNITS = 18, 13, 4, 164
+_OTHER_UNITS = {
+    *("g", "gn", "mm", "cm", "um", "µm", "in", "inch", "ft", "mil", "mils", "ips", "db"),
+    *("kn", "mn", "lbf", "lb", "kgf", "kp"),
+}
+"""Units of labels that are none of SI, in small letters."""
 _END, _TEXT, _HEAD = b"    -1", b"    58", 13
 """What ends and begins a dataset, what text says of itself, and its lines before the numbers."""
 _NUMBERS = re.compile(rb"[-+.0-9eEdD \t]*")
@@ -169,7 +174,7 @@ def read_frf(path: str | os.PathLike[str]) -> tuple[Frf, ...]:
     ----------
     path : str or path-like
         The file, `.uff` or `.unv`: datasets 58 and 58b. Other datasets and functions are passed
-        over.
+        over. Files whose dataset 164 or labels name other units than those of SI are refused.
 
     Raises
     ------
@@ -184,6 +189,8 @@ def read_frf(path: str | os.PathLike[str]) -> tuple[Frf, ...]:
         universal = pyuff.UFF(str(file))
         kinds = np.atleast_1d(universal.get_set_types())
         sets = [universal.read_sets(int(at)) for at in np.flatnonzero(kinds == 58)]
+        for at in np.flatnonzero(kinds == _UNITS):
+            _require_si(universal.read_sets(int(at)))
         found = [_frf(one) for one in sets if one["func_type"] == _FRF]
     if not found:
         raise ModelError(f"{file}: it holds no frequency response function (dataset 58, type 4)")
@@ -226,12 +233,23 @@ def _frf(dataset: Mapping[str, object]) -> Frf:
         raise ValueError("a function of something else than frequency")
     if dataset["orddenom_spec_data_type"] not in (0, _FORCE):
         raise ValueError("a response per something else than force")
+    for axis in ("ordinate", "orddenom"):
+        label = str(dataset.get(f"{axis}_axis_units_lab", "")).strip()
+        if not _OTHER_UNITS.isdisjoint(re.split(r"[^a-zµ]+", label.lower())):
+            raise ValueError(f"its {axis} is in {label[:20]!r}; export it in m, s and N")
     quantity = _QUANTITIES.get(int(str(dataset["ordinate_spec_data_type"])))
     if quantity is None:
         raise ValueError("neither displacement, nor velocity, nor acceleration")
     dof, reference = (_dof(dataset, side) for side in ("rsp", "ref"))
     about = str(dataset["id2"]).strip().removeprefix(_NONE)
     return Frf(2.0 * np.pi * frequency, values, dof, reference, quantity, about)  # type: ignore[arg-type]
+
+
+def _require_si(units: Mapping[str, object]) -> None:
+    """Refuse a file whose numbers are not in metres and newtons."""
+    code, length, force = (float(str(units[name])) for name in ("units_code", "length", "force"))
+    if code != 1 and not (length == 1.0 and force == 1.0):
+        raise ValueError(f"its units are those of code {code:g}; export it in m, s and N")
 
 
 def _dof(dataset: Mapping[str, object], side: str) -> str:

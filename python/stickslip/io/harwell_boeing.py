@@ -21,10 +21,12 @@ from stickslip.io.source import at_line, read_text
 
 _CUT_EXPONENT = re.compile(r"[EeDd][+-]?\d$")
 _FORMAT = re.compile(
-    r"\(\s*(?P<scale>[0-9]+\s*P\s*,?\s*)?(?P<repeat>[0-9]*)\s*(?P<kind>[IEDFG])"
+    r"\(\s*(?P<scale>[0-9]+\s*P\s*,?\s*)?(?P<repeat>[0-9]*)\s*(?P<group>\(?)\s*(?P<kind>[IEDFG])"
     r"\s*(?P<width>[0-9]+)",
     re.I,
 )
+_FORMATS = re.compile(r"\((?:[^()]|\([^()]*\))*\)")
+"""Formats, which may have a group: (1P,3(D25.16))."""
 _COUNT = re.compile("[0-9]{1,18}")
 
 
@@ -106,7 +108,7 @@ def read_harwell_boeing(path: Path) -> Sparse:
     kind = lines[2][:3].upper()
     _require_supported(kind)
     height, width, entries = _whole_numbers(lines[2][3:], 3)[:3]
-    formats = [_Columns.parse(written) for written in re.findall(r"\([^()]*\)", lines[3])[:3]]
+    formats = [_Columns.parse(written) for written in _FORMATS.findall(lines[3])[:3]]
     if len(formats) < 3:
         raise ValueError("line 4 does not hold three number formats")
     start, blocks = 5 if sum(cards[3:]) else 4, []
