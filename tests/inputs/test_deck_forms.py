@@ -2,6 +2,7 @@
 
 import os
 
+import numpy as np
 import pytest
 
 import stickslip as ss
@@ -57,7 +58,7 @@ def test_rows_in_files_of_their_own(tmp_path):
     with pytest.raises(ss.ModelError, match=r"no file sets\.inp, which it includes"):
         ss.read_mesh(tmp_path / "joint.inp")
     os.mkfifo(tmp_path / "sets.inp")
-    with pytest.raises(ss.ModelError, match=r"sets\.inp"):
+    with pytest.raises(ss.ModelError, match=r"no file sets\.inp, which it includes"):
         ss.read_mesh(tmp_path / "joint.inp")
 
 
@@ -113,3 +114,25 @@ def test_directions_of_transformed_nodes_are_not_x_y_z(tmp_path):
     assert mesh.surface("SEAT").area == pytest.approx(6.0)
     with pytest.raises(ss.ModelError, match="node 1 has directions of its own"):
         mesh.surface("FEET")
+
+
+@pytest.mark.parametrize("other", ["C3D8", "C3D6"])
+def test_bricks_whose_corners_coincide(tmp_path, other):
+    """Two wedges make a cube; one of them, or both, are bricks with an edge of no length."""
+    lines = ["*NODE"]
+    lines += [f"{1 + at}, {at % 2}., {at // 2 % 2}., {at // 4}." for at in range(8)]
+    second = "2, 2,4,3,3, 6,8,7,7" if other == "C3D8" else "2, 2,4,3, 6,8,7"
+    lines += ["*ELEMENT, TYPE=C3D8", "1, 1,2,3,3, 5,6,7,7", f"*ELEMENT, TYPE={other}", second]
+    lines += ["*NSET, NSET=ALL, GENERATE", "1, 8", "*NSET, NSET=TOP, GENERATE", "5, 8"]
+    mesh = ss.read_mesh(deck(tmp_path, "\n".join([*lines, ""])))
+    assert mesh.surface("ALL").area == pytest.approx(6.0)
+    top = mesh.surface("TOP")
+    assert top.areas == pytest.approx([1 / 6, 1 / 3, 1 / 3, 1 / 6])
+    assert top.normals[:, 2] == pytest.approx(1.0)
+    assert top.shortest_edge == 1.0
+
+
+def test_solids_whose_faces_are_not_known_are_refused():
+    mesh = ss.Mesh(np.random.default_rng(2).random((27, 3)), [("hexahedron27", [[*range(27)]])])
+    with pytest.raises(ss.ModelError, match="faces of hexahedron27 are not known"):
+        mesh.surface(np.ones(27, dtype=bool))

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
 from stickslip.checks import Matrix
+from stickslip.errors import ModelError
 from stickslip.fe.surface import Places, outward
 
 _QUADRILATERAL = [(0, 1), (1, 2), (2, 3), (3, 0)]
@@ -46,6 +48,7 @@ KINDS = {
 }
 """Kinds of elements, named as meshio does, and the shape of each."""
 _SHELLS = ("triangle", "quad")
+_SOLID = re.compile("(VTK_LAGRANGE_)?(tetra|pyramid|wedge|hexahedron)", re.I)
 
 
 def outside(cells: Sequence[tuple[str, Places]], points: Matrix) -> list[Places]:
@@ -53,6 +56,12 @@ def outside(cells: Sequence[tuple[str, Places]], points: Matrix) -> list[Places]
 
     A shell on the face of a solid, its skin, would count the area of the face twice.
     """
+    strange = next((kind for kind, _ in cells if _SOLID.match(kind) and kind not in KINDS), None)
+    if strange is not None:
+        raise ModelError(
+            f"mesh: faces of {strange} are not known, and those around it are not at the outside; "
+            "mesh with elements whose nodes are at corners and edges"
+        )
     known = [(kind, own) for kind, own in cells if kind in KINDS]
     solid = [(kind, own) for kind, own in known if KINDS[kind] not in _SHELLS]
     found = [
@@ -72,6 +81,8 @@ def outside(cells: Sequence[tuple[str, Places]], points: Matrix) -> list[Places]
     kept = of_solids[place] == 1
     # The first face of several alike is one of a solid, if there is one.
     kept[count:] = first[place[count:]] == np.arange(count, len(keys))
+    # Corners of bricks that coincide make edges of faces.
+    kept &= keys[:, 1] >= 0
     ends = np.cumsum([len(faces) for faces in every])[:-1]
     return [faces[one] for faces, one in zip(every, np.split(kept, ends), strict=True)]
 
@@ -99,7 +110,8 @@ def _corners(faces: Places) -> Places:
     """Return the corners of faces in ascending order, (m, 4), of triangles after a -1."""
     corners = faces[:, : 4 if faces.shape[1] in (4, 8) else 3]
     padded = np.full((len(faces), 4), -1)
-    padded[:, 4 - corners.shape[1] :] = corners
+    padded[:, 4 - corners.shape[1] :] = np.sort(corners, axis=1)
+    padded[:, 1:][padded[:, 1:] == padded[:, :-1]] = -1
     return np.sort(padded, axis=1)
 
 

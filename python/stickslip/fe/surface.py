@@ -110,7 +110,8 @@ class Surface:
         """Least distance of two corners of a face [m]."""
         corners = [self.points[face[:, : _CORNERS[face.shape[1]]]] for face in self.faces]
         edges = [np.linalg.norm(one - np.roll(one, 1, axis=1), axis=-1) for one in corners]
-        return min(float(one.min()) for one in edges)
+        # Corners of a collapsed face coincide.
+        return min(float(one[one > 0.0].min(initial=np.inf)) for one in edges)
 
     @property
     def _integrals(self) -> Iterable[tuple[Places, Matrix, Matrix]]:

@@ -6,8 +6,7 @@ from collections.abc import Container, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from stickslip.checks import is_file
-from stickslip.io.source import at_line, plain
+from stickslip.io.source import at_line, plain, require_included
 
 _HEAD, _TAIL = 8, 8
 """Columns of the name of a card, and of the mark of its continuation."""
@@ -31,8 +30,7 @@ def bulk_cards(file: Path, names: Iterable[str], depth: int = 0) -> Iterator[Car
     """Give each card of some names up to ENDDATA, those of included files in their place."""
     if depth > _DEEPEST:
         raise ValueError("INCLUDE: files include each other")
-    if not is_file(file):
-        raise ValueError(f"there is no file {file.name}, which it includes")
+    require_included(file)
     wanted = (*names, "INCLUDE", "ENDDATA")
     own = file.name if depth else ""
     for card in cards(plain(file.read_bytes(), "latin-1").split("\n"), wanted):

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeAlias
 
-from stickslip.checks import is_file
 from stickslip.io.numbers import real_field, whole_field
-from stickslip.io.source import at_line, read_text
+from stickslip.io.source import at_line, read_text, require_included
 
 _DEEPEST = 8
 """Files that name each other with *INCLUDE."""
@@ -102,8 +101,7 @@ def _lines(file: Path, depth: int) -> Iterator[_Line]:
     """Give the lines of a deck, without comments, those of included files in their place."""
     if depth > _DEEPEST:
         raise ValueError("*INCLUDE: files include each other")
-    if not is_file(file):
-        raise ValueError(f"there is no file {file.name}, which it includes")
+    require_included(file)
     for number, line in enumerate(read_text(file, "latin-1").split("\n"), 1):
         text = line.strip()
         if not text or text.startswith("**"):

@@ -68,6 +68,16 @@ def readable(file: Path, kind: str) -> Iterator[None]:
         ) from error
 
 
+def require_included(file: Path) -> None:
+    """Refuse a file that another one names and that is not there, or is none."""
+    try:
+        there = is_file(file)
+    except ModelError:
+        there = False
+    if not there:
+        raise ValueError(f"there is no file {file.name}, which it includes")
+
+
 @contextmanager
 def at_line(number: int, file: str = "") -> Iterator[None]:
     """Name the line of a file, the one that is read or another, in what is wrong with it."""
