@@ -147,3 +147,45 @@ def test_dmig_in_wide_free_fields(tmp_path):
     )
     np.testing.assert_array_equal(read_matrix(tmp_path / "k.pch"), [[4e5, -1.25e5], [-1.25e5, 3e5]])
     assert read_dofs(tmp_path / "k.pch") == ("2.3", "27.1")
+
+
+def test_dmig_of_scalar_points(tmp_path):
+    (tmp_path / "k.pch").write_text("DMIG,STIF,0,6,2,0\nDMIG,STIF,101,,,101,,5.\n")
+    assert read_dofs(tmp_path / "k.pch") == ("101.0",)
+    (tmp_path / "k.pch").write_text("INCLUDE 'rest'\nDMIG,STIF,0,6,2,0\nDMIG,STIF,101,,,101,,5.\n")
+    with pytest.raises(ss.ModelError, match="line 1: INCLUDE: write the matrices into one file"):
+        read_matrix(tmp_path / "k.pch")
+
+
+def output4(written, exponent="E+00", form=6):
+    """Return a matrix of OUTPUT4 as text."""
+    columns = [(1, (4.0, -1.0)), (2, (-1.0, 3.0)), (3, (1.0,))]
+    lines = [f"{2:8d}{2:8d}{form:8d}{2:8d}{'K':8s}{written}"]
+    for column, values in columns:
+        lines.append(f"{column:8d}{1:8d}{len(values):8d}")
+        numbers = "".join(f"{one:23.16E}" for one in values)
+        lines.append(numbers.replace("E+00", exponent))
+    return "\n".join([*lines, ""])
+
+
+@pytest.mark.parametrize(
+    ("written", "exponent"),
+    [
+        ("1P,3E23.16", "E+00"),
+        ("1P3E23.16", "e+00"),
+        ("1P,3D23.16", "D+00"),
+        ("(1P,3E23.16)", "E+00"),
+        (" 1P, 3E23.16", "E+00"),
+        ("1P,3E23.16E3", "+000"),
+    ],
+)
+def test_op4_formats(tmp_path, written, exponent):
+    (tmp_path / "k.op4").write_text(output4(written, exponent))
+    np.testing.assert_array_equal(read_matrix(tmp_path / "k.op4"), [[4.0, -1.0], [-1.0, 3.0]])
+
+
+@pytest.mark.parametrize(("form", "kind"), [(3, "diagonal"), (8, "identity")])
+def test_op4_matrices_that_are_packed_are_refused(tmp_path, form, kind):
+    (tmp_path / "k.op4").write_text(output4("1P,3E23.16", form=form))
+    with pytest.raises(ss.ModelError, match=f"'K' is a packed {kind} one; export it as square"):
+        read_matrix(tmp_path / "k.op4")

@@ -39,8 +39,10 @@ def read_dmig(path: Path, key: Key) -> Labelled:
     """
     text = read_text(path, ended=True)
     matrices: dict[str, _Entries] = {}
-    for card in cards(text.splitlines(), ("DMIG",)):
+    for card in cards(text.split("\n"), ("DMIG", "INCLUDE")):
         with at_line(card.line):
+            if card.name == "INCLUDE":
+                raise ValueError("INCLUDE: write the matrices into one file")
             _take(matrices, card.fields)
     if not matrices:
         raise ValueError("no DMIG card")
@@ -67,7 +69,8 @@ def _take(matrices: dict[str, _Entries], fields: list[str]) -> None:
 
 
 def _add_column(entries: _Entries, fields: list[str]) -> None:
-    column = whole_field(fields[1]), whole_field(fields[2])
+    # Scalar points have no component.
+    column = whole_field(fields[1]), whole_field(fields[2] or "0")
     if fields[3]:
         raise ValueError(f"{fields[3]!r} stands where column {column[0]}.{column[1]} is blank")
     body = fields[4:]

@@ -19,10 +19,11 @@ from stickslip.io.entries import Sparse, require_size
 from stickslip.io.numbers import real_field, whole_field
 from stickslip.io.source import Key, Lines, plain
 
-_FORMAT = re.compile(r"(?:1P,?)?(\d+)[ED](\d+)\.\d+", re.I)
+_FORMAT = re.compile(r"\(?(?:1P,?)?(\d+)[ED](\d+)\.\d+(?:E\d+)?\)?", re.I)
 _LARGE = 65536
 """Rows from which on a sparse matrix has the addresses of large ones, whatever its sign."""
 _SQUARE, _SYMMETRIC = 1, 6
+_WITHOUT_ENTRIES = {3: "diagonal", 8: "identity"}
 _ROUNDED = 1e-6
 """Asymmetry left by single precision, as a part of the largest entry."""
 
@@ -92,6 +93,9 @@ def _matrix(header: _Header, columns: list[tuple[int, list[_Piece]]]) -> Sparse:
 
     if header.kind > 2:
         raise ValueError(f"matrix {header.name!r} is complex; export real matrices")
+    if header.form in _WITHOUT_ENTRIES:
+        kind = _WITHOUT_ENTRIES[header.form]
+        raise ValueError(f"matrix {header.name!r} is a packed {kind} one; export it as square")
     size = abs(header.rows)
     require_size(size, header.columns)
     before, rows, places, values = 0, [], [], []
@@ -236,7 +240,7 @@ def _first_line(line: str) -> tuple[_Header, tuple[int, int]]:
     end = 48 if wide else 32
     sizes = _integers(line[: end - 16], 2, (end - 16) // 2) + _integers(line[end - 16 : end], 2)
     numbers = line[end + 8 :].strip()
-    written = _FORMAT.fullmatch(numbers)
+    written = _FORMAT.fullmatch(numbers.replace(" ", ""))
     if numbers and written is None:
         raise ValueError(f"unknown number format {numbers[:20]!r}")
     header = _Header(_name(line[end : end + 8]), *sizes)
