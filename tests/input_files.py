@@ -13,6 +13,7 @@ import scipy.sparse
 
 import stickslip as ss
 from archives import archive
+from decks import DECK, bulk_data
 from stickslip.analyses.pattern_store import Key, PatternStore, Row
 from stickslip.io import Frf, read_dofs, read_frf, read_matrix, write_frf
 
@@ -98,6 +99,8 @@ def make(folder: Path) -> dict[str, Callable[[Path], object]]:
         "DMIG,STIF,2,3,,2,3,4.0E5\n"
     )
     (folder / "joint.cdb").write_text(archive(*JOINT))
+    (folder / "joint.inp").write_text(DECK)
+    (folder / "joint.bdf").write_text(bulk_data(False))
     mapping = ["    Matrix Eqn          Node    DOF     ", "             1             4    UX  "]
     (folder / "rows.mapping").write_text("\n".join([*mapping, ""]))
     write_frf(folder / "frf.uff", [Frf([1.0, 2.0, 3.5], [1.0, 1j, 2.0], "1.1", "2.3")] * 2)
@@ -114,7 +117,7 @@ def make(folder: Path) -> dict[str, Callable[[Path], object]]:
     return readers | {
         "bar.dof": read_dofs,
         "rows.mapping": read_dofs,
-        "joint.cdb": _mesh,
+        **dict.fromkeys(("joint.cdb", "joint.inp", "joint.bdf"), _mesh),
         "frf.uff": lambda path: [(one.dof, one.omega, one.values) for one in read_frf(path)],
         "study.toml": lambda path: ss.study.Study.load(path).tables.model_dump_json(),
         "result.nc": _result,

@@ -143,6 +143,27 @@ def test_kinds_of_elements(tmp_path, element, own, kind):
     np.testing.assert_allclose(mesh.nodes, places, atol=1e-12)
 
 
+@pytest.mark.parametrize(
+    "types",
+    [
+        "ET,2,SOLID185\nET, 3, CONTA173",
+        "et,2,185,,,1\net,3,173",
+        "*SET,TID ,  2.000000000000    \nET,tid,185\nET,3,173",
+        "ETBLOCK,        3,        2\n(2i9,19a9)\n        2      185        0\n"
+        "        3      173        0        0        0\n       -1",
+    ],
+)
+def test_types_of_elements(tmp_path, types):
+    text = joint().replace("ET,        2,185\nET,        3,173", types)
+    assert types in text
+    mesh = read(tmp_path, text)
+    assert [(kind, len(own)) for kind, own in mesh.cells] == [("hexahedron", 2)]
+    assert mesh.surface("CONTACTS").area == pytest.approx(6.0)
+    if types.startswith("ETBLOCK"):
+        with pytest.raises(ss.ModelError, match="3 types announced, 2 present"):
+            read(tmp_path, text.replace("        3,        2", "        3,        3"))
+
+
 def test_other_elements_are_left_out(tmp_path):
     """Springs and surface effects, with their node away from the surface, change no area."""
     nodes = NODES | {40: (9.0, 9.0, 9.0)}

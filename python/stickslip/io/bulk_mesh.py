@@ -75,7 +75,7 @@ class _Bulk:
             raise ValueError(f"{name} {number} has more than {count} nodes")
         if not all(nodes[:corners]):
             raise ValueError(f"{name} {number} has not {corners} corners")
-        own = [whole_field(one or "0") for one in (number, *nodes[:count])]
+        own = [whole_field(one) if one else 0 for one in (number, *nodes[:count])]
         if own[0] in self.known:
             raise ValueError(f"{name} {number}: an element of this number is given twice")
         self.known.add(own[0])

@@ -26,7 +26,8 @@ class Row(list[str]):
 
     def __init__(self, line: _Line) -> None:
         self.file, self.line, text = line
-        self.fields = [word.strip().strip("\"'").upper() for word in text.split(",")]
+        plain = text.upper().replace('"', "").replace("'", "")
+        self.fields = [word.strip() for word in plain.split(",")]
         super().__init__(word for word in self.fields if word)
 
     def whole(self) -> list[int]:
