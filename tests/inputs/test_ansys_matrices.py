@@ -46,6 +46,23 @@ def test_the_mapping_names_the_rows(tmp_path):
         read_dofs(tmp_path / "k.matrix")
 
 
+def test_what_apdl_math_exports_has_the_same_rows(tmp_path):
+    hbmat(tmp_path, "k", K, NAMES)
+    lower = scipy.sparse.tril(K, format="csc").tocoo()
+    head = [
+        "%%MatrixMarket matrix coordinate real symmetric ",
+        "%====",
+        "% Creator: ANSYS Inc",
+        "% ",
+    ]
+    entries = zip(lower.row + 1, lower.col + 1, lower.data, strict=True)
+    rows = [f"{row} {column} {value:.15E}" for row, column, value in entries]
+    text = "\n".join([*head, f"3 3 {lower.nnz}", *rows, ""]).replace("E+00", "E+000")
+    (tmp_path / "k.mmf").write_text(text)
+    np.testing.assert_array_equal(read_matrix(tmp_path / "k.mmf"), K.toarray())
+    assert read_dofs(tmp_path / "k.mmf") == NAMES
+
+
 def test_other_quantities_keep_their_names(tmp_path):
     (tmp_path / "t.mapping").write_text("Matrix Eqn Node DOF\n 1 3 TEMP\n 2 3 ux\n")
     assert read_dofs(tmp_path / "t.mapping") == ("3.TEMP", "3.1")

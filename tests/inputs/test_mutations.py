@@ -114,6 +114,6 @@ def test_every_kind_of_file_is_among_them(sound):
     from stickslip.io.matrices import _READERS
 
     endings = {Path(name).suffix for name in sound[1]} | {".mtx.gz"}
-    alike = {".hb", ".rb", ".rsa", ".hbf", ".psa", ".matrix", ".dmig", ".mas"}
+    alike = {".hb", ".rb", ".rsa", ".hbf", ".psa", ".matrix", ".mmf", ".dmig", ".mas"}
     missing = set(_READERS) - endings - alike - {".full"}
     assert missing <= {".op4"}

@@ -72,7 +72,9 @@ class _Deck:
         """Take over what stands below a keyword."""
         keyword, options, rows = block.keyword, block.options, block.rows
         if keyword in ("PART", "INSTANCE"):
-            raise ValueError(f"*{keyword}: write the deck without parts and instances")
+            raise ValueError(
+                f"*{keyword}: write the deck without parts and instances (CAE: model attributes)"
+            )
         if keyword in _GENERATE and (rows or keyword != "SYSTEM"):
             raise ValueError(f"*{keyword}: write all nodes, elements and coordinates out")
         if keyword == "NODE":

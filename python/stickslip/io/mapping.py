@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 from stickslip.checks import is_file
 from stickslip.io.entries import Labelled, Sparse, node_names
-from stickslip.io.harwell_boeing import read_harwell_boeing
 from stickslip.io.numbers import whole_field
 from stickslip.io.source import at_line, read_text
 
@@ -14,16 +14,20 @@ _WAYS = {"UX": "1", "UY": "2", "UZ": "3", "ROTX": "4", "ROTY": "5", "ROTZ": "6"}
 _ENDINGS = (".mapping", ".MAPPING")
 
 
-def read_hbmat(path: Path) -> Labelled | Sparse:
-    """Read a Harwell-Boeing matrix, with the names of its rows if a .mapping lies beside it."""
-    matrix = read_harwell_boeing(path)
-    beside = next((one for end in _ENDINGS if is_file(one := path.with_suffix(end))), None)
-    if beside is None:
-        return matrix
-    names = read_mapping(beside)
-    if matrix.shape[0] != len(names):
-        raise ValueError(f"{matrix.shape[0]} rows, but {beside.name} names {len(names)}")
-    return Labelled(matrix, names)
+def with_mapping(read: Callable[[Path], Sparse]) -> Callable[[Path], Labelled | Sparse]:
+    """Return a reader of matrices that names the rows if a .mapping lies beside the file."""
+
+    def reader(path: Path) -> Labelled | Sparse:
+        matrix = read(path)
+        beside = next((one for end in _ENDINGS if is_file(one := path.with_suffix(end))), None)
+        if beside is None:
+            return matrix
+        names = read_mapping(beside)
+        if matrix.shape[0] != len(names):
+            raise ValueError(f"{matrix.shape[0]} rows, but {beside.name} names {len(names)}")
+        return Labelled(matrix, names)
+
+    return reader
 
 
 def read_mapping(path: Path) -> tuple[str, ...]:

@@ -24,7 +24,8 @@ from stickslip.io.abaqus import read_abaqus, read_calculix, read_calculix_dofs
 from stickslip.io.ansys import read_ansys
 from stickslip.io.dmig import read_dmig
 from stickslip.io.entries import Labelled, require_size
-from stickslip.io.mapping import read_hbmat, read_mapping
+from stickslip.io.harwell_boeing import read_harwell_boeing
+from stickslip.io.mapping import read_mapping, with_mapping
 from stickslip.io.matlab import read_matlab
 from stickslip.io.matrix_market import read_matrix_market
 from stickslip.io.npz import read_numpy
@@ -61,9 +62,9 @@ def read_matrix(
         `scipy.sparse.save_npz`), `.mat` (MATLAB), `.mtx` or
         `.mtx.gz` (MatrixMarket, or Abaqus' text), `.hb`, `.rb`, `.rua`, `.rsa`, `.hbf`, `.psa`,
         `.matrix` (Harwell-Boeing and Rutherford-Boeing, as of ANSYS' HBMAT, whose `.mapping` may
-        lie beside it to name the rows), `.op4` (Nastran's OUTPUT4),
-        `.pch`, `.dmig` (Nastran's DMIG), `.sti`, `.mas` (CalculiX, with the `.dof` beside it),
-        `.full` (ANSYS, with the package ansys-mapdl-reader).
+        lie beside it to name the rows), `.mmf` (MatrixMarket of ANSYS' EXPORT), `.op4` (Nastran's
+        OUTPUT4), `.pch`, `.dmig` (Nastran's DMIG), `.sti`, `.mas` (CalculiX, with the `.dof` beside
+        it), `.full` (ANSYS, with the package ansys-mapdl-reader).
     key : str, optional
         Name of the matrix in a file that holds several (`.npz`, `.mat`, `.op4`, `.pch`; "stiffness"
         or "mass" in `.full` and substructures of Abaqus); it may be left out if there is only one.
@@ -189,7 +190,11 @@ _READERS: dict[str, _Reader] = {
     ".mat": read_matlab,
     ".mtx": _read_mtx,
     ".mtx.gz": _only(read_matrix_market),
-    **dict.fromkeys((".hb", ".rb", ".rua", ".rsa", ".hbf", ".psa", ".matrix"), _only(read_hbmat)),
+    **dict.fromkeys(
+        (".hb", ".rb", ".rua", ".rsa", ".hbf", ".psa", ".matrix"),
+        _only(with_mapping(read_harwell_boeing)),
+    ),
+    ".mmf": _only(with_mapping(read_matrix_market)),
     ".op4": read_op4,
     **dict.fromkeys((".pch", ".dmig"), read_dmig),
     **dict.fromkeys((".sti", ".mas"), _only(read_calculix)),
