@@ -113,6 +113,16 @@ def test_mat_73(folder):
     np.testing.assert_array_equal(read_matrix(file, "none"), np.zeros((2, 3)))
 
 
+def test_mat_73_of_other_programs(folder):
+    with h5py.File(folder / "k.mat", "w", userblock_size=512) as file:
+        file.create_dataset("K", data=K.T).attrs["MATLAB_class"] = "double"
+        file["none"] = np.array([0, 3], np.uint64)
+        file["none"].attrs["MATLAB_empty"] = np.uint8(1)
+    np.testing.assert_array_equal(read_matrix(folder / "k.mat", "K"), K)
+    with pytest.raises(ModelError, match="'none' is empty; save the matrix again"):
+        read_matrix(folder / "k.mat", "none")
+
+
 @pytest.mark.parametrize(
     ("key", "message"),
     [

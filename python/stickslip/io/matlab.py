@@ -72,7 +72,11 @@ def _read_hdf5(file: Path, key: Key) -> object:
         variable = variables[name]
         if isinstance(variable, h5py.Group):
             return _read_sparse(file, name, variable)
-        kind = variable.attrs.get("MATLAB_class", b"double").decode()
+        said = variable.attrs.get("MATLAB_class", b"double")
+        # MATLAB writes bytes, others text.
+        kind = said if isinstance(said, str) else said.decode()
+        if kind in _NUMBERS and variable.attrs.get("MATLAB_empty", 0):
+            raise ModelError(f"{file}: {brief(name)} is empty; save the matrix again")
         if kind not in _NUMBERS:
             raise ModelError(f"{file}: {brief(name)} is a {kind}; save the matrix by itself")
         if variable.dtype.names:
