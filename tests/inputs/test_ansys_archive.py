@@ -321,7 +321,8 @@ CHANGES = [
         "N,R5.3,LOC,       99,1.,2.,3.",
         "N: one by one; write it with CDWRITE",
     ),
-    ("EXTOPT,ATTR,", "NROTAT,ALL", "NROTAT changes selected nodes"),
+    ("EXTOPT,ATTR,", "NROTAT,ALL", "NROTAT changes nodes or elements; write it"),
+    ("EXTOPT,ATTR,", "nummrg,node", "NUMMRG changes nodes or elements"),
     ("EXTOPT,ATTR,", "TYPE,2\nE,1,2,3,4,5,6,7,8", "E: elements one by one"),
 ]
 

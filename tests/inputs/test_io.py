@@ -4,6 +4,7 @@ import builtins
 import contextlib
 import gzip
 
+import h5py
 import numpy as np
 import pytest
 import scipy.io

@@ -128,9 +128,9 @@ def test_functions_in_si_units_are_read(tmp_path, units, label):
     [
         ((5, 1000.0, 1000.0), {}, "its units are those of code 5; export it in m, s and N"),
         ((7, 39.37, 0.2248), {}, "code 7"),
-        (None, {"ordinate_axis_units_lab": "mm/s^2"}, "its ordinate is in 'mm/s^2'"),
-        (None, {"ordinate_axis_units_lab": "g"}, "its ordinate is in 'g'"),
-        (None, {"orddenom_axis_units_lab": "lbf"}, "its orddenom is in 'lbf'"),
+        (None, {"ordinate_axis_units_lab": "mm/s^2"}, "its response is in 'mm/s^2'"),
+        (None, {"ordinate_axis_units_lab": "g"}, "its response is in 'g'"),
+        (None, {"orddenom_axis_units_lab": "lbf"}, "its force is in 'lbf'"),
     ],
 )
 def test_functions_in_other_units_are_refused(tmp_path, units, labels, says):

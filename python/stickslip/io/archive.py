@@ -240,9 +240,9 @@ class _Reader:
         if "-1" not in words and most_nodes(self.made.types.get(self.type, 0)):
             raise ValueError(f"{words[0]}: elements one by one; write it with CDWRITE")
 
-    def rotation(self, words: list[str]) -> None:
-        """NROTAT, NMODIF: they change what is selected, and that is not known here."""
-        raise ValueError(f"{words[0].upper()} changes selected nodes; write it with CDWRITE")
+    def change(self, words: list[str]) -> None:
+        """NROTAT, NUMMRG and others act on what is selected, and that is not known here."""
+        raise ValueError(f"{words[0].upper()} changes nodes or elements; write it with CDWRITE")
 
     def at_end(self) -> bool:
         """Return whether no line of numbers follows."""
@@ -315,6 +315,7 @@ _COMMANDS = {
     "N": _Reader.one_node,
     "E": _Reader.one_element,
     "EN": _Reader.one_element,
-    "NROTAT": _Reader.rotation,
-    "NMODIF": _Reader.rotation,
+    **dict.fromkeys(("NROTAT", "NANG", "NORA", "NORL", "NMODIF", "NSCALE"), _Reader.change),
+    **dict.fromkeys(("NUMMRG", "NUMCMP", "NGEN", "EGEN", "NSYM", "ESYM"), _Reader.change),
+    **dict.fromkeys(("NDELE", "EDELE", "EMODIF", "ENGEN"), _Reader.change),
 }

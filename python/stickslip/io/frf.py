@@ -233,10 +233,10 @@ def _frf(dataset: Mapping[str, object]) -> Frf:
         raise ValueError("a function of something else than frequency")
     if dataset["orddenom_spec_data_type"] not in (0, _FORCE):
         raise ValueError("a response per something else than force")
-    for axis in ("ordinate", "orddenom"):
+    for axis, what in (("ordinate", "response"), ("orddenom", "force")):
         label = str(dataset.get(f"{axis}_axis_units_lab", "")).strip()
         if not _OTHER_UNITS.isdisjoint(re.split(r"[^a-zµ]+", label.lower())):
-            raise ValueError(f"its {axis} is in {label[:20]!r}; export it in m, s and N")
+            raise ValueError(f"its {what} is in {label[:20]!r}; export it in m, s and N")
     quantity = _QUANTITIES.get(int(str(dataset["ordinate_spec_data_type"])))
     if quantity is None:
         raise ValueError("neither displacement, nor velocity, nor acceleration")
