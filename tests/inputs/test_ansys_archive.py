@@ -2,6 +2,7 @@
 
 import random
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -418,3 +419,18 @@ def test_whatever_is_damaged_counts_hold_and_one_line_says_so(tmp_path):
     assert all("\n" not in one and "joint.cdb" in one for one in refused)
     assert len(refused) > 1000
     assert other < 60
+
+
+@pytest.mark.parametrize("name", ["HexBeam.cdb", "TetBeam.cdb", "sector.cdb"])
+def test_archives_of_ansys_as_its_reader_reads_them(name):
+    reader = pytest.importorskip("ansys.mapdl.reader", reason="pip install 'stickslip[ansys]'")
+    file = Path(reader.__file__).parent / "examples" / name
+    theirs, mesh = reader.Archive(str(file), parse_vtk=False), ss.read_mesh(file)
+    order = np.argsort(mesh.numbers)
+    np.testing.assert_array_equal(mesh.numbers[order], theirs.nnum)
+    # theirs is a unit of the last digit off
+    np.testing.assert_allclose(mesh.nodes[order], theirs.nodes, rtol=1e-15, atol=1e-15)
+    assert sum(len(own) for _, own in mesh.cells) == len(theirs.elem)
+    assert mesh.node_sets.keys() == theirs.node_components.keys()
+    for part, members in theirs.node_components.items():
+        assert sorted(mesh.numbers[mesh.node_sets[part]]) == sorted(members)

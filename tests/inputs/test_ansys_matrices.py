@@ -1,5 +1,7 @@
 """Matrices of ANSYS' HBMAT with the names of their rows, and the whole way to a response."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import scipy.sparse
@@ -165,3 +167,28 @@ def test_from_the_files_of_ansys_to_a_response(tmp_path):
         found.append(ss.forced_response(model, [at], 1, stability=False))
     assert found[0].slip_fraction(0).max() > 0.0
     np.testing.assert_allclose(*(one.amplitude(loaded) for one in found), rtol=1e-6)
+
+
+def test_rows_of_a_full_file_are_at_the_nodes_of_the_archive():
+    """A rotation of the archive's coordinates strains no element: numbers and directions agree."""
+    reader = pytest.importorskip(
+        "ansys.mapdl.reader", reason="pip install 'stickslip[ansys]', with its examples"
+    )
+    folder = Path(reader.__file__).parent / "examples"
+    mesh = ss.read_mesh(folder / "HexBeam.cdb")
+    stiffness = read_matrix(folder / "file.full", "stiffness", sparse=True)
+    names = [name.split(".") for name in read_dofs(folder / "file.full", "stiffness")]
+    nodes, ways = np.array(names, np.int64).T
+    place = {number: at for at, number in enumerate(mesh.numbers.tolist())}
+    ((_, cells),) = mesh.cells
+    held = ~np.isin(mesh.numbers, nodes)
+    assert np.unique(mesh.nodes[held, 2]).tolist() == [0.0]
+    near = np.unique(cells[held[cells].any(axis=1)])
+    at = np.array([place[node] for node in nodes])
+    free = ~np.isin(at, near)
+    assert free.sum() > 800
+    for axis in np.eye(3):
+        turned = np.cross(axis, mesh.nodes)[at, ways - 1]
+        forces = stiffness @ turned
+        assert np.abs(forces[free]).max() < 1e-13 * abs(stiffness).max() * np.abs(turned).max()
+        assert np.abs(forces[~free]).max() > 1e-3 * abs(stiffness).max()
