@@ -2,6 +2,8 @@
 
 import numpy as np
 
+import stickslip as ss
+
 CORNERS = ((0, 0), (2, 0), (2, 3), (0, 3))
 AROUND = [(0, 1), (1, 2), (2, 3), (3, 0)]
 EDGES = [*AROUND, *((a + 4, b + 4) for a, b in AROUND), *((a, a + 4) for a in range(4))]
@@ -105,3 +107,27 @@ def brick(corners, middles):
         nodes[number] = ((PLACES[one] + PLACES[other]) / 2).tolist()
         own.append(number)
     return nodes, own
+
+
+LOW = dict(zip(range(1, 9), [(x, y, z) for z in (0, 1) for x, y in CORNERS], strict=True))
+HIGH = dict(zip(range(21, 29), [(x, y, z + 1) for x, y, z in LOW.values()], strict=True))
+NODES = {number: tuple(map(float, place)) for number, place in (LOW | HIGH).items()}
+ELEMENTS = [(10, 2, [*LOW]), (20, 2, [*HIGH]), (31, 3, [24, 23, 22, 21])]
+COMPONENTS = [
+    ("SEAT", "NODE", [5, 6, 7, 8]),
+    ("PAD", "NODE", [21, 22, 23, 24]),
+    ("CONTACTS", "ELEM", [31]),
+    ("BODIES", "ELEM", [10, 20]),
+]
+TYPES = {2: 185, 3: 173}
+
+
+def joint(**changes):
+    given = {"nodes": NODES, "elements": ELEMENTS, "types": TYPES, "components": COMPONENTS}
+    return archive(**given | changes)
+
+
+def read(folder, text, name="joint.cdb", **said):
+    path = folder / name
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    return ss.read_mesh(path, **said)
