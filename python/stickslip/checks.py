@@ -242,7 +242,10 @@ def real_number(value: object, entry: str, *, finite: bool = True) -> float:
     if isinstance(value, complex | np.complexfloating):
         raise EntryError(entry, f": {brief(value)} is complex; give a real number")
     if isinstance(value, bool) or not isinstance(value, Real):
-        raise EntryError(entry, f": {brief(value)} is not a number; give a real number in SI units")
+        several = isinstance(value, list | tuple | np.ndarray)
+        remedy = "give one number, and the others in calls of their own"
+        asked = f"one number; {remedy}" if several else "a number; give a real number in SI units"
+        raise EntryError(entry, f": {brief(value)} is not {asked}")
     try:
         number = float(value)
     except OverflowError:

@@ -12,7 +12,7 @@ from stickslip.calls import outside
 from stickslip.checks import brief, unknown
 from stickslip.disk.bladed_disk import ALL_SECTORS
 from stickslip.errors import ModelError
-from stickslip.model import Model
+from stickslip.model import Model, natural_frequencies
 from stickslip.model.notable import loaded_dofs, massless_dofs, physical_dofs
 from stickslip.model.state import State
 from stickslip.results.arrays import Int
@@ -28,6 +28,12 @@ def require_time(model: Model) -> None:
             f"model: a tuned BladedDisk is {reason}; give all sectors, disk.mistuned(0)",
             study=f"disk: a tuned disk is {reason}; compute all sectors, {ALL_SECTORS}",
         )
+
+
+def require_lowest(model: Model, mode: int) -> None:
+    """Refuse the lowest mode where the structure is statically unstable with all contacts stuck."""
+    if not mode and not model.travels and model.structure.unstable_dof is not None:
+        natural_frequencies(model)
 
 
 def driving_dofs(

@@ -10,6 +10,7 @@ import numpy as np
 from stickslip import _core
 from stickslip.analyses.rigid_contacts import rigid_contacts
 from stickslip.analyses.texts import TEXTS, told
+from stickslip.analyses.uniqueness import doubts, is_unique, structure_doubts
 from stickslip.checks import listed
 from stickslip.model import Coulomb, Model, StructuralDamper, natural_frequencies
 from stickslip.model.state import State
@@ -65,7 +66,7 @@ def balance_assumptions(
                     _take="point takes its" if orbits == 1 else "points take their",
                 ),
                 _observed(model, dofs),
-                uniqueness(model),
+                *doubts(model),
                 _truncation(dofs, arrays, single=single),
                 rigid_contacts(model, arrays),
                 missed_tolerances(arrays.status, "points"),
@@ -97,7 +98,7 @@ def orbit_assumptions(
                 and told("frequencies/balance", tolerance=settings.tolerance, _low=low, _high=high),
                 _frequencies(None, settings.tolerance, arrays, solution, asked),
                 _observed(model, dofs),
-                uniqueness(model),
+                *doubts(model),
                 missed_tolerances(arrays.status, "points"),
             )
         )
@@ -129,7 +130,7 @@ def transient_assumptions(
             and settings.keep < settings.periods
             and told("kept-periods", periods=settings.keep),
             _observed(model, dofs),
-            uniqueness(model),
+            *doubts(model),
         )
     )
 
@@ -154,6 +155,7 @@ def free_assumptions(
             forces > 0 and told("forces-left-out", forces=forces),
             told("criterion", tolerance=settings.tolerance, periods=settings.periods),
             told("modes"),
+            *structure_doubts(model),
         )
     )
 
@@ -274,24 +276,10 @@ def direct_assumption(model: Model) -> Diagnostic | None:
     return told("direct-solution") if model.problem.is_direct else None
 
 
-def uniqueness(model: Model) -> Diagnostic | None:
-    """Say that a solution need not be the only one, if contact laws or damping leave that open.
-
-    The passive structure with laws that are monotone operators has one steady motion.
-    """
-    open_laws = list(dict.fromkeys(model.problem.laws_not_monotone))
-    if open_laws:
-        return told("law-not-monotone", _laws=listed(open_laws))
-    damped = model.structure.is_damped
-    if damped is None:
-        return told("undamped-motion")
-    return None if damped else told("negative-damping")
-
-
 def arrays_of(solution: _core.Solution, model: Model) -> Arrays:
     """Return the numbers of a curve; a motion that is the only one is stable."""
     arrays = Arrays.of(solution)
-    if uniqueness(model) is not None:
+    if not is_unique(model):
         return arrays
     states = np.where(arrays.solved, STABILITY.index("stable"), STABILITY.index("not decided"))
     return replace(arrays, stability=states.astype(np.uint8))

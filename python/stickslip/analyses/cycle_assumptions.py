@@ -6,6 +6,7 @@ import numpy as np
 
 from stickslip import _core
 from stickslip.analyses.texts import told
+from stickslip.analyses.uniqueness import structure_doubts
 from stickslip.model import Model
 from stickslip.results.diagnostic import Diagnostic, present
 from stickslip.results.limit_cycles import CycleArrays
@@ -36,6 +37,7 @@ def cycle_assumptions(
             arrays.limit is None and not (solution.interrupted or returned) and told("no-turn"),
             solution.jumps > 0 and told("branch-jumps", jumps=solution.jumps),
             settings.method == "newton" and _truncation(model, settings, arrays),
+            *structure_doubts(model),
         )
     )
 

@@ -8,9 +8,9 @@ import numpy as np
 
 from stickslip import _core
 from stickslip.analyses.arguments import require_forced, require_held
-from stickslip.analyses.assumptions import uniqueness
 from stickslip.analyses.peak_assumptions import damper_assumptions
 from stickslip.analyses.run import Progress, Run, refusals
+from stickslip.analyses.uniqueness import is_unique
 from stickslip.analyses.variation import (
     local_stiffness,
     resonance_range,
@@ -144,7 +144,7 @@ def _peaks(
             solved,
             settings,
             progress,
-            (uniqueness(model) is None) if settings.bounds else None,
+            is_unique(model) if settings.bounds else None,
         )
     arrays = DamperArrays.of(peaks)
     return (arrays if rigid is None else _with_limit(arrays, values, rigid)), peaks

@@ -17,10 +17,11 @@ from stickslip.analyses.arguments import (
     require_held,
     warn_of_effort,
 )
-from stickslip.analyses.assumptions import arrays_of, balance_assumptions, uniqueness
+from stickslip.analyses.assumptions import arrays_of, balance_assumptions
 from stickslip.analyses.branch_assumptions import branch_assumptions
 from stickslip.analyses.free_flight import with_free_flight
 from stickslip.analyses.run import Progress, Run, refusals
+from stickslip.analyses.uniqueness import is_unique
 from stickslip.memory import require_memory
 from stickslip.model import Model
 from stickslip.results import ForcedResponse
@@ -97,7 +98,7 @@ def forced_response(
                 driving,
                 kept,
                 run,
-                (uniqueness(model) is None) if bounded else None,
+                is_unique(model) if bounded else None,
             )
         arrays = arrays_of(solution, model)
         result = ForcedResponse.of(

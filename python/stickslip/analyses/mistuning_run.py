@@ -198,5 +198,5 @@ class Work:
             interrupted=interrupted,
             timings={"total": seconds},
             counters={"disks": self.done, "points": self.points},
-            diagnostics=mistuning_assumptions(self.settings, arrays, self.dofs),
+            diagnostics=mistuning_assumptions(self.disk, self.settings, arrays, self.dofs),
         )

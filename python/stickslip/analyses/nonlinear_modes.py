@@ -5,9 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from stickslip import _core
+from stickslip.analyses.arguments import require_lowest
 from stickslip.analyses.mode_bounds import mode_bounds
 from stickslip.analyses.run import Progress, Run, refusals
 from stickslip.analyses.texts import told
+from stickslip.analyses.uniqueness import structure_doubts
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.results.diagnostic import Diagnostic, missed_tolerances, present
@@ -69,6 +71,7 @@ def nonlinear_modes(
     """
     model = _of_diameter(model, settings.nodal_diameter)
     _check_method(model, settings.method)
+    require_lowest(model, settings.mode)
     amplitude, bounded = settings.amplitude, settings.bounded
     if bounded and settings.method == "quasi-static":
         raise ModelError('residual = "bounds": not of a quasi-static mode; give a residual in N')
@@ -92,7 +95,11 @@ def nonlinear_modes(
             settings=kept,
             arrays=arrays,
             interrupted=solution.interrupted or bounds.interrupted,
-            diagnostics=(*_assumptions(kept, arrays, solution), *bounds.told),
+            diagnostics=(
+                *_assumptions(kept, arrays, solution),
+                *bounds.told,
+                *present(structure_doubts(model)),
+            ),
         )
         return run.ended(result, f"{result.omega.size} amplitudes")
 

@@ -8,9 +8,9 @@ from stickslip.analyses.assumptions import (
     LARGE_ERROR,
     bounds_of,
     direct_assumption,
-    uniqueness,
 )
 from stickslip.analyses.texts import told
+from stickslip.analyses.uniqueness import doubts, structure_doubts
 from stickslip.checks import listed
 from stickslip.model import Model
 from stickslip.results.arrays import Bool
@@ -35,14 +35,14 @@ def damper_assumptions(
             *_peaks(settings, arrays, "values"),
             _truncation_of_peaks(settings, arrays),
             settings.bounds and bounds_of(arrays, "bounds/peaks"),
-            uniqueness(model),
+            *doubts(model),
             direct_assumption(model),
         )
     )
 
 
 def mistuning_assumptions(
-    settings: MistuningSettings, arrays: MistuningArrays, dofs: tuple[str, ...]
+    disk: Model, settings: MistuningSettings, arrays: MistuningArrays, dofs: tuple[str, ...]
 ) -> tuple[Diagnostic, ...]:
     """Say what a mistuning study took for granted."""
     at_edge = (
@@ -60,6 +60,7 @@ def mistuning_assumptions(
             _range(settings, "Peaks are the highest points", at_edge, edges),
             *_peaks(settings, arrays, "peaks"),
             _truncation_of_factors(arrays, dofs),
+            *structure_doubts(disk),
         )
     )
 

@@ -105,6 +105,11 @@ TEXTS = {
     "not damp either may not be the only one.",
     "negative-damping": "The damping is negative for some motion: the solution may be unstable or "
     "not the only one.",
+    "negative-stiffness": "The stiffness matrix has a negative eigenvalue, mostly of dof {dof!r}: "
+    "without its contacts the structure is statically unstable, and motions may be too. Check "
+    "signs and supports, unless it is meant.",
+    "overdamped": "Damping ratio {ratio:g} is {ratio:.0%} of critical, and nothing oscillates; for "
+    "{ratio:g} % give {_percent:g}.",
     "truncation": "{_what} could still change {dof!r} by {share:.1%} at omega = {omega:.6g} rad/s, "
     "the worst point; {_remedy}.",
     "truncation/peak": "The discarded harmonics could still change the peak by {share:.1%} at "

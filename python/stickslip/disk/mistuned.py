@@ -19,7 +19,7 @@ from stickslip.model.contact import Contact
 from stickslip.model.damping import ModalDamping, Rayleigh, makes_blocks
 from stickslip.model.force import Force
 from stickslip.model.model import Model, from_core
-from stickslip.model.structure import Structure
+from stickslip.model.structure import DampingLaw, Structure
 
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
@@ -90,6 +90,11 @@ class MistunedDisk(Model):
             return replace(force, phase=force.phase + now - before)
 
         return self._like(disk=disk, forces=[turned(force) for force in self.forces])
+
+    @property
+    def damping_law(self) -> DampingLaw | None:
+        """What the damping of a sector was made of."""
+        return self.disk.damping_law
 
     def with_structure(self, structure: Structure) -> Model:
         """Return a plain `Model` with another structure of all sectors."""

@@ -20,7 +20,7 @@ from stickslip.errors import ModelError
 from stickslip.model.contact import Contact
 from stickslip.model.contact_law import ContactLaw
 from stickslip.model.force import Force
-from stickslip.model.structure import Structure
+from stickslip.model.structure import DampingLaw, Structure
 
 if TYPE_CHECKING:
     from stickslip import _core
@@ -120,6 +120,11 @@ class Model:
     def contact_names(self) -> tuple[str, ...]:
         """Names of the contacts, in order."""
         return tuple(str(contact.name) for contact in self.contacts)
+
+    @property
+    def damping_law(self) -> DampingLaw | None:
+        """What the damping was made of; None where it was given as a matrix."""
+        return self.structure.damping_law
 
     def contact_index(self, contact: ContactRef) -> int:
         """Return the position of a contact, given by its position, counted from 0, or its name."""

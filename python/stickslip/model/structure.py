@@ -32,6 +32,8 @@ __all__ = ["DampingLaw", "ModalDamping", "Rayleigh", "Structure", "join"]
 
 # Printed matrices carry rounded digits; anything larger than this is a wrong matrix.
 _ASYMMETRY = 1e-8
+# Rounding may put the zero eigenvalue of an undamped or rigid motion on either side, by this share.
+_ROUNDING = 1e-9
 _SHOWN = 6
 
 
@@ -126,10 +128,27 @@ class Structure(Dofs):
         False if it feeds energy into one.
         """
         # Gyroscopic terms are skew and do no work: only the symmetric part takes energy out.
-        # Rounding may put the zero eigenvalue of an undamped motion on either side.
         if scaled_pivots(self.damping, -1e-13) is not None:
             return True
-        return None if scaled_pivots(self.damping, 1e-9) is not None else False
+        return None if scaled_pivots(self.damping, _ROUNDING) is not None else False
+
+    @cached_property
+    def unstable_dof(self) -> str | None:
+        """Name of the dof that moves most where the stiffness is negative; None if it never is.
+
+        By itself such a structure is statically unstable.
+        """
+        if scaled_pivots(self.stiffness, _ROUNDING) is not None:
+            return None
+        from scipy.linalg import eigh
+
+        diagonal = np.abs(np.diag(self.stiffness))
+        scale = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
+        scaled = self.stiffness * scale * scale[:, None]
+        values, vectors = eigh(scaled, subset_by_index=[0, 0])
+        if values[0] > -10.0 * _ROUNDING:
+            return None
+        return self.dofs[int(np.abs(scale * vectors[:, 0]).argmax())]
 
     @classmethod
     def of_law(

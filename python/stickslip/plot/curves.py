@@ -14,6 +14,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from stickslip.disk import BladedDisk
+from stickslip.disk.rotor import rotor_order
 from stickslip.errors import ModelError
 from stickslip.model import Model, PointRef
 from stickslip.plot import style
@@ -63,12 +64,16 @@ def curves(
         result.amplitude(dof, measure)  # what is unknown is refused before anything is drawn
     per_force, auto = options["normalise"] == "force", options["length_unit"] == "auto"
     view = _View(ax, dof, measure, omega, length, per_force, auto)
-    for number, scale in enumerate(dict.fromkeys(each)):
-        alike = [one for one, own in zip(listed, each, strict=True) if own == scale]
-        own = replace(view, omega=scale, named=not number)
-        _draw_limits(own, alike, stuck=options["stuck"], free=options["free"])
     single = len(listed) == 1
     colours = style.colours(len(listed))
+    # Every engine order meets the disk at other nodal diameters, with limits of their own.
+    waves = [(scale, rotor_order(one.model)) for one, scale in zip(listed, each, strict=True)]
+    several_orders = len({order for _, order in waves}) > 1
+    for number, wave in enumerate(dict.fromkeys(waves)):
+        alike = [one for one, own in zip(listed, waves, strict=True) if own == wave]
+        colour = colours[waves.index(wave)] if several_orders else None
+        own = replace(view, omega=wave[0], named=not number, limits=colour)
+        _draw_limits(own, alike, stuck=options["stuck"], free=options["free"])
     for result, name, colour, scale in zip(listed, names, colours, each, strict=True):
         own = replace(view, omega=scale)
         own.draw(result, colour, name)
@@ -126,6 +131,8 @@ class _View:
     """Whether lengths get a prefix."""
     named: bool = True
     """Whether the legend names the linear limits."""
+    limits: Colour | None = None
+    """Colour of the linear limits, if those of several engine orders are to be told apart."""
 
     @property
     def unit(self) -> str:
@@ -188,6 +195,8 @@ class _View:
             looks |= {"label": f"{name} (linear{at})"}
         if not self.named:
             looks |= {"label": "_"}
+        if self.limits is not None:
+            looks |= {"color": self.limits}
         x, y = self.omega.factor * omega, self._factor(model) * amplitude
         self.ax.plot(x, y, **looks)
 
@@ -267,6 +276,8 @@ def _draw_limits(
     if not model.contacts or low == high or not max(levels):
         return
     at = "" if view.per_force or len(set(levels)) == 1 else f", {max(levels):.5g} N"
+    if view.limits is not None:
+        at = f", each engine order{at}"
     if not any(contact.slips for contact in model.contacts):
         # Springs without friction have one linear limit, that at rest.
         if free or stuck:

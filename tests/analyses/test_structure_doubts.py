@@ -1,0 +1,116 @@
+"""What results say of structures whose numbers look like a slip of sign or unit."""
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+from stickslip.results.diagnostic import Severity
+
+MASS = np.diag([1.0, 0.5])
+STIFFNESS = np.array([[3e4, -1e4], [-1e4, 2.5e4]])
+DOUBTS = {"overdamped", "negative-stiffness"}
+
+
+def model(stiffness=STIFFNESS, damping=None, contacts=None, forces=None):
+    if damping is None:
+        damping = np.diag([3.0, 2.0])
+    structure = ss.Structure(MASS, stiffness, damping, ["x", "y"])
+    if contacts is None:
+        contacts = [ss.Jenkins("x", stiffness=1e3, slip_force=1.0)]
+    return ss.Model(structure, contacts, forces or [ss.Force("y", 1.0)])
+
+
+def unstable(**parts):
+    return model(STIFFNESS * [[1, 1], [1, -1]], **parts)
+
+
+def doubts(result):
+    return {one.code: one for one in result.diagnostics if one.code in DOUBTS}
+
+
+ANALYSES = {
+    "balance": lambda m: ss.forced_response(m, [150.0], harmonics=3),
+    "single": lambda m: ss.single_harmonic(m, [150.0]),
+    "orbits": lambda m: ss.exact_response(m, [150.0]),
+    "exact transient": lambda m: ss.transient(m, omega=150.0, periods=3),
+}
+OF_STABLE = ANALYSES | {
+    "free": lambda m: ss.classify(m, {"x": 1e-6}),
+    "mode": lambda m: ss.nonlinear_modes(m, amplitude=[1e-6], harmonics=1),
+    "cycles": lambda m: ss.limit_cycles(
+        m, ss.Rayleigh(mass=-40.0), ratio=[1.5], harmonics=1, stability=False
+    ),
+    "damper": lambda m: ss.damper_curve(m, slip_force=[1.0], dof="y", omega=(100, 300)),
+}
+
+
+@pytest.mark.parametrize("name", OF_STABLE)
+def test_percents_taken_for_a_ratio_are_a_caution(name):
+    damping = ss.ModalDamping([0.01, 2.0])
+    found = doubts(OF_STABLE[name](model(damping=damping)))
+    assert list(found) == ["overdamped"]
+    assert found["overdamped"].severity is Severity.CAUTION
+    assert found["overdamped"].text == (
+        "Damping ratio 2 is 200% of critical, and nothing oscillates; for 2 % give 0.02."
+    )
+    assert not doubts(OF_STABLE[name](model(damping=ss.ModalDamping([0.01, 0.99]))))
+
+
+def test_blades_of_a_disk_are_asked_too():
+    blade = model(damping=ss.ModalDamping(1.0)).structure
+    coupling = [ss.Coupling("x", stiffness=10.0)]
+    disk = ss.BladedDisk(blade, 4, coupling, forces=[ss.Force("y", 1.0)], engine_order=1)
+    study = ss.mistuning_study(
+        disk, deviation=0.01, patterns=2, omega=(150, 250), harmonics=1, seed=1
+    )
+    for result in (ANALYSES["balance"](disk), ANALYSES["balance"](disk.mistuned(0)), study):
+        assert list(doubts(result)) == ["overdamped"]
+
+
+@pytest.mark.parametrize("name", ANALYSES)
+def test_a_negative_stiffness_is_a_caution_with_its_dof(name):
+    (found,) = doubts(ANALYSES[name](unstable())).values()
+    assert (found.code, found.data["dof"]) == ("negative-stiffness", "y")
+    assert found.severity is Severity.CAUTION
+
+
+def test_statics_of_a_negative_stiffness_are_a_caution():
+    at_rest = ss.static_response(unstable(forces=[ss.Force("y", 1.0, harmonic=0)]))
+    assert list(doubts(at_rest)) == ["negative-stiffness"]
+
+
+def test_motions_on_a_negative_stiffness_are_not_called_stable():
+    assert ANALYSES["balance"](model()).stable.tolist() == [True]
+    for contacts in ([], None):
+        assert ANALYSES["balance"](unstable(contacts=contacts)).stable.tolist() == [None]
+
+
+@pytest.mark.parametrize("name", ["mode", "cycles", "free"])
+def test_the_lowest_mode_of_a_negative_stiffness_is_refused_as_such(name):
+    with pytest.raises(ss.ModelError, match="statically unstable"):
+        OF_STABLE[name](unstable())
+
+
+def test_a_spring_that_holds_while_contacts_stick_leaves_the_mode_alone():
+    held = unstable(contacts=[ss.Jenkins("y", stiffness=8e4, slip_force=1.0)])
+    assert list(doubts(OF_STABLE["mode"](held))) == ["negative-stiffness"]
+
+
+@pytest.mark.parametrize("digits", [16, 9])
+@pytest.mark.parametrize("scale", [1e-9, 1.0, 1e9])
+def test_rigid_bodies_are_not_taken_for_unstable(digits, scale):
+    size = 60
+    chain = 2.0 * np.eye(size) - np.eye(size, k=1) - np.eye(size, k=-1)
+    chain[0, 0] = chain[-1, -1] = 1.0
+    stiffness = chain @ np.diag(np.linspace(1.0, 7.0, size)) @ chain * scale
+    printed = np.array([[float(f"{entry:.{digits}g}") for entry in row] for row in stiffness])
+    structure = ss.Structure(np.eye(size), 0.5 * (printed + printed.T))
+    assert structure.unstable_dof is None
+
+
+def test_massless_dofs_and_units_leave_the_judgement_alone():
+    turned = np.diag([1e6, 1e-3]) + np.array([[0.0, 20.0], [20.0, 0.0]])
+    assert ss.Structure(MASS, turned, None, ["x", "rz"]).unstable_dof is None
+    beyond = np.diag([1e6, 1e-3]) + np.array([[0.0, 40.0], [40.0, 0.0]])
+    assert ss.Structure(MASS, beyond, None, ["x", "rz"]).unstable_dof == "rz"
+    assert ss.Structure(np.diag([1.0, 0.0]), beyond, None, ["x", "rz"]).unstable_dof == "rz"

@@ -1,0 +1,68 @@
+"""Linear limits of curves under several engine orders."""
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+import stickslip as ss
+from stickslip import plot
+from stickslip.plot import style
+from stickslip.plot.limits import limit_curve
+from stickslip.reference import snecma_beam
+
+
+@pytest.fixture(scope="module")
+def sweep():
+    beam = snecma_beam()
+    disk = ss.BladedDisk(
+        beam.structure,
+        12,
+        [ss.Coupling("tip", stiffness=1e5)],
+        contacts=beam.contacts,
+        forces=beam.forces,
+        engine_order=1,
+    )
+    return ss.sweep(
+        disk, lambda m: ss.forced_response(m, [160.0, 250.0], harmonics=1), engine_order=[1, 2, 4]
+    )
+
+
+@pytest.fixture
+def ax():
+    return Figure().add_subplot()
+
+
+def lines(ax, gid):
+    return [one for one in ax.lines if one.get_gid() == gid]
+
+
+def test_every_engine_order_has_limits_in_the_colour_of_its_curve(sweep, ax):
+    sweep.plot("tip", ax=ax)
+    limits, curves = lines(ax, style.LIMIT), lines(ax, style.RESPONSE)
+    assert len(limits) == 6
+    for order, result, curve in zip(range(3), sweep.results, curves, strict=True):
+        for line, stuck in zip(limits[2 * order : 2 * order + 2], (True, False), strict=True):
+            omega, amplitude = limit_curve(
+                result.model, "tip", (160.0, 250.0), "half_range", stuck=stuck
+            )
+            np.testing.assert_array_equal(line.get_xdata(), omega)
+            np.testing.assert_array_equal(line.get_ydata(), amplitude)
+            assert line.get_color() == curve.get_color()
+    named = [one.get_label() for one in limits if not one.get_label().startswith("_")]
+    assert named == ["stuck (linear, each engine order)", "free (linear, each engine order)"]
+    peaks = [max(one.get_ydata()) for one in limits[1::2]]
+    assert len({round(float(one), 9) for one in peaks}) == 3
+
+
+def test_levels_of_one_engine_order_share_grey_limits(sweep, ax):
+    disk = sweep.results[0].model
+    levels = [
+        ss.forced_response(disk.scaled(force=level), [160.0, 250.0], 1) for level in (1.0, 2.0)
+    ]
+    plot.curves(levels, "tip", ax=ax)
+    assert [one.get_color() for one in lines(ax, style.LIMIT)] == [style.GREY] * 2
+
+
+def test_several_engine_orders_where_one_is_asked_are_named(sweep):
+    with pytest.raises(ss.ModelError, match=r"engine_order: \[2, 3\] is not one number; give one"):
+        ss.speed_response(snecma_beam(), [10.0], dof="tip", engine_order=[2, 3])
