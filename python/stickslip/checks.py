@@ -243,9 +243,8 @@ def real_number(value: object, entry: str, *, finite: bool = True) -> float:
         raise EntryError(entry, f": {brief(value)} is complex; give a real number")
     if isinstance(value, bool) or not isinstance(value, Real):
         several = isinstance(value, list | tuple | np.ndarray)
-        remedy = "give one number, and the others in calls of their own"
-        asked = f"one number; {remedy}" if several else "a number; give a real number in SI units"
-        raise EntryError(entry, f": {brief(value)} is not {asked}")
+        remedy = "a single one, no list" if several else "a real number in SI units"
+        raise EntryError(entry, f": {brief(value)} is not a number; give {remedy}")
     try:
         number = float(value)
     except OverflowError:

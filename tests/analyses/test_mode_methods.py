@@ -100,3 +100,33 @@ def test_methods_say_what_they_do_not_take():
         ss.nonlinear_modes(chain(force), amplitude=[1e-3], method="phase-resonance")
     with pytest.raises(ss.ModelError, match="method"):
         ss.nonlinear_modes(chain(), amplitude=[1e-3], method="static")
+
+
+def iwan(chi, *, further=0):
+    size = 1 + further
+    dofs = ["tip", "base"][:size]
+    structure = ss.Structure(
+        np.eye(size), 4e4 * np.diag(np.arange(1.0, size + 1.0)), 0.8 * np.eye(size), dofs
+    )
+    joint = ss.Iwan("tip", stiffness=7e4, slip_force=1.5, chi=chi)
+    return ss.Model(structure, [joint])
+
+
+@pytest.mark.parametrize("further", [0, 1])
+def test_microslip_that_softens_the_first_amplitude_is_named_with_a_remedy(further):
+    model, low = iwan(-0.937, further=further), 1e-8
+    lost = ss.nonlinear_modes(model, mode=further, amplitude=[low], harmonics=1)
+    (why,) = [one for one in lost.diagnostics if one.severity == "failure"]
+    assert np.isnan(lost.omega).all()
+    assert why.code == "mode-not-reached"
+    static = ss.nonlinear_modes(model, mode=further, amplitude=[low], method="quasi-static")
+    assert why.data["omega"] == pytest.approx(static.omega[0], rel=1e-12)
+    assert ("stands apart" in why.text) == bool(further)
+    # Both remedies that it names help, and agree on the frequency.
+    begun = ss.nonlinear_modes(model, mode=further, amplitude=[1e-25, low], harmonics=1)
+    assert begun.omega[1] == pytest.approx(static.omega[0], rel=1e-2)
+    whole = ss.nonlinear_modes(model, mode=further, amplitude=(low, 1e-6), harmonics=1)
+    assert [one.data["omega"] for one in whole.diagnostics if one.code == why.code] == [
+        why.data["omega"]
+    ]
+    assert not any("up to 0" in one for one in whole.assumptions)

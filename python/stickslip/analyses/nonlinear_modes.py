@@ -34,6 +34,10 @@ _REMEDY = {
 }
 
 
+_SOFTER = 0.02
+"""Share of the frequency by which contacts soften a mode beyond reach from the linear one."""
+
+
 @configured(ModeKeys)
 def nonlinear_modes(
     model: Model, *, settings: ModeKeys, progress: Progress = None
@@ -87,6 +91,7 @@ def nonlinear_modes(
         with refusals(model):
             solution = _core.nonlinear_mode(model.problem, kept, None, run)
             bounds = mode_bounds(model, kept, solution, run)
+            slipping = _slipping(model, kept, solution, run)
         arrays = ModeArrays.of(solution, omega_bounds=bounds.omega, damping_bounds=bounds.damping)
         result = NonlinearModes.of(
             solution,
@@ -96,7 +101,7 @@ def nonlinear_modes(
             arrays=arrays,
             interrupted=solution.interrupted or bounds.interrupted,
             diagnostics=(
-                *_assumptions(kept, arrays, solution),
+                *_assumptions(kept, arrays, solution, slipping),
                 *bounds.told,
                 *present(structure_doubts(model)),
             ),
@@ -131,8 +136,40 @@ def _check_method(model: Model, method: str) -> None:
         )
 
 
+def _slipping(
+    model: Model, settings: ModeSettings, solution: _core.NonlinearMode, run: Run
+) -> Diagnostic | None:
+    """Say that no mode was found because contacts slip much at the first amplitude already.
+
+    The search begins at the linear mode. The quasi-static mode, which begins at the loop of the
+    amplitude, tells how far away that is.
+    """
+    end, reached = solution.end
+    begun = end != "stalled" or np.isfinite(reached)
+    if begun or settings.method != "periodic" or model.travels:
+        return None
+    update = {"method": "quasi-static", "amplitudes": settings.amplitudes[:1], "whole": False}
+    static = _core.nonlinear_mode(
+        model.problem, settings.model_copy(update=update | {"bounds": False}), None, run
+    )
+    omega, linear = float(static.columns["omega"][0]), float(solution.columns["linear"][0])
+    if not abs(omega - linear) > _SOFTER * linear:
+        return None
+    several = len(model.structure) > 1
+    return told(
+        "mode-not-reached/microslip",
+        amplitude=settings.amplitudes[0],
+        omega=omega,
+        linear=linear,
+        _apart=", or a mode that stands apart from others" if several else "",
+    )
+
+
 def _assumptions(
-    settings: ModeSettings, arrays: ModeArrays, solution: _core.NonlinearMode
+    settings: ModeSettings,
+    arrays: ModeArrays,
+    solution: _core.NonlinearMode,
+    slipping: Diagnostic | None,
 ) -> tuple[Diagnostic, ...]:
     """Say what a nonlinear mode took for granted."""
     omega, ratio = arrays.linear.tolist()
@@ -146,6 +183,7 @@ def _assumptions(
         (
             told(f"mode-at-rest{kind}", mode=settings.mode, omega=omega, ratio=ratio),
             settings.method != "quasi-static"
+            and most > 0
             and told(
                 "harmonics/odd" if solution.half_wave else "harmonics", most=most, _chosen=chosen
             ),
@@ -161,7 +199,7 @@ def _assumptions(
             solution.met is not None and not met.size and _between(*solution.met),
             arrays.turns.size > 0
             and told("turns", _listed=", ".join(f"{one:.4g}" for one in arrays.turns[:6])),
-            end in _WHY and _ended(settings.method, end, amplitude),
+            slipping or (end in _WHY and _ended(settings.method, end, amplitude)),
             missed_tolerances(arrays.status, "amplitudes") if arrays.status.size else None,
         )
     )

@@ -24,6 +24,10 @@ TEXTS = {
     "mode-not-reached": "The branch ended at the amplitude {amplitude:.6g} ({_why}): {_remedy}.",
     "mode-not-reached/start": "No motion near the linear mode was found at small amplitudes: ask "
     "for a mode that stands apart from others{_driven}.",
+    "mode-not-reached/microslip": "No motion near the linear mode was found: at the amplitude "
+    "{amplitude:.6g} contacts already slip so much that the frequency is {omega:.6g} rad/s instead "
+    "of {linear:.6g}. Begin at amplitudes smaller by many orders, or take "
+    "method='quasi-static'{_apart}.",
     # flutter maps
     "wave-stability": "Limit cycles count as stable where the damping ratio rises with the "
     "amplitude: against changes of the amplitude of their own wave. Other waves beside them are "
