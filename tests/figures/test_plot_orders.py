@@ -64,5 +64,7 @@ def test_levels_of_one_engine_order_share_grey_limits(sweep, ax):
 
 
 def test_several_engine_orders_where_one_is_asked_are_named(sweep):
-    with pytest.raises(ss.ModelError, match=r"engine_order: \[2, 3\] is not a number; give a single one"):
+    with pytest.raises(
+        ss.ModelError, match=r"engine_order: \[2, 3\] is not a number; give a single one"
+    ):
         ss.speed_response(snecma_beam(), [10.0], dof="tip", engine_order=[2, 3])

@@ -69,12 +69,15 @@ class Run(Interruption):
 def refusals(model: Model) -> Iterator[None]:
     """Say by the names of the model what the core refuses."""
     try:
+        model.forget_own()
         yield
     except ModelError:
         raise
     except ValueError as error:
         model.raise_own()
         raise refusal(error, model) from error
+    finally:
+        model.forget_own()
     model.raise_own()
 
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from copy import copy
-from typing import Any, ClassVar, NamedTuple, NoReturn, Self, TypeAlias
+from typing import Any, ClassVar, NamedTuple, NoReturn, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,19 +14,12 @@ from stickslip.checks import Matrix, brief, set_fields
 from stickslip.errors import ModelError
 from stickslip.model.bonded import Bonded
 from stickslip.model.contact import Contact
+from stickslip.model.contact_answer import Answers, array_of, arrays_of, compare
 from stickslip.model.dofs import Dofs
 from stickslip.model.nodes import Displacement, Nodes
 
-_STEP = 1e-6
-"""Step of differences, relative to what is moved: its cube root of rounding, a little less."""
-_DIFFERS = 1e-4
-"""Difference of a slope, relative to the largest of its kind, that rounding does not explain."""
-_ROUNDED = 16.0 * float(np.finfo(np.float64).eps)
-"""Rounding of a force or a state, relative to the largest: what saturates has no other slope."""
 _LAST = 1 << 12
 """Calls up to which tangents are compared, at every power of two."""
-_Answer: TypeAlias = tuple[Matrix, Matrix, list[Matrix]]
-"""Forces, new states and tangents."""
 
 
 class Tangents(NamedTuple):
@@ -99,6 +92,7 @@ class ContactLaw(Contact):
     """Where it acts."""
     _raised: Exception | None = None
     _calls: int = 0
+    _answers: Answers | None = None
 
     def __init__(
         self,
@@ -113,7 +107,7 @@ class ContactLaw(Contact):
                 f"{self.law} contact: dofs: {nodes.size} names per node for {self.directions} "
                 f"displacements of the law; give {self.directions}"
             )
-        set_fields(self, name=name, nodes=nodes, _raised=None, _calls=0)
+        set_fields(self, name=name, nodes=nodes, _raised=None, _calls=0, _answers=None)
         Contact.__post_init__(self)
 
     def __init_subclass__(cls) -> None:
@@ -232,7 +226,8 @@ class ContactLaw(Contact):
     def moved(self, dofs: Sequence[str | None], name: str | None) -> Self:
         """Return the contact at other degrees of freedom."""
         moved = copy(self)
-        set_fields(moved, name=name, nodes=self.nodes.moved(dofs), _raised=None, _calls=0)
+        set_fields(moved, name=name, nodes=self.nodes.moved(dofs))
+        set_fields(moved, _raised=None, _calls=0, _answers=None)
         return moved
 
     def to_spec(self) -> NoReturn:
@@ -246,9 +241,9 @@ class ContactLaw(Contact):
 
     def _stuck(self) -> tuple[Matrix, Matrix]:
         """Return stiffness and state stiffness of all nodes, (n d, n d) and (n m, n d)."""
-        n, d, m = self.points, self.directions, self.state_size
-        stiffness = self._array(self.stiffness(), "stiffness", (n, d, d))
-        of_state = self._array(self.state_stiffness(), "state_stiffness", (n, m, d))
+        n, d, m = self._sizes
+        stiffness = array_of(self.stiffness(), (n, d, d), self._entry, "stiffness")
+        of_state = array_of(self.state_stiffness(), (n, m, d), self._entry, "state_stiffness")
         largest = np.abs(stiffness).max(initial=0.0)
         skew = np.abs(stiffness - stiffness.transpose(0, 2, 1)).max(initial=0.0)
         if skew > 1e-9 * largest or np.linalg.eigvalsh(stiffness).min() < -1e-9 * largest:
@@ -262,22 +257,41 @@ class ContactLaw(Contact):
         self, before: Matrix, after: Matrix, state: Matrix, derive: bool
     ) -> tuple[Matrix, Matrix, list[Matrix] | None] | None:
         """Return force, state and tangents; None once an error was raised, which is kept."""
-        # Motions that are no numbers come of an error of another thread: the law is not to blame.
-        numbers = all(np.isfinite(array).all() for array in (before, after, state))
-        if self._raised is not None or not numbers:
+        if self._raised is not None:
             return None
+        given = np.concatenate((before.ravel(), after.ravel(), state.ravel()))
+        if self._answers is None:
+            self._answers = Answers(self._sizes)
+        answer = self._answers.find(key := given.tobytes())
+        if answer is None:
+            # Motions that are no numbers come of an error of another thread: the law is not to
+            # blame.
+            if not np.isfinite(given).all():
+                return None
+            answer = self._taken(before, after, state, derive)
+            if answer is None:
+                return None
+            self._answers.keep(key, answer)
+        force, new, *tangents = answer
+        return force, new, tangents if derive else None
+
+    def _taken(
+        self, before: Matrix, after: Matrix, state: Matrix, derive: bool
+    ) -> list[Matrix] | None:
+        """Take a step; None if it raises an error, which is kept."""
         try:
             for array in (before, after, state):
                 array.flags.writeable = False
-            force, new, tangents = self._answer(before, after, state)
+            answer = self._answer(before, after, state)
             if derive:
                 self._calls += 1
                 if self._calls & (self._calls - 1) == 0 and self._calls <= _LAST:
-                    self._compare(before, after, state, (force, new, tangents))
+                    at = {"before": before, "after": after, "state": state}
+                    compare(self._answer, at, answer, self._stuck()[1], self._entry)
         except Exception as error:  # Whatever the user's own code raises.
             self._raised = error
             return None
-        return force, new, tangents if derive else None
+        return answer
 
     def raise_own(self) -> None:
         """Raise, once, what the law raised while the core called it."""
@@ -291,98 +305,26 @@ class ContactLaw(Contact):
                 "correct it"
             ) from error
 
+    def forget(self) -> None:
+        """Forget what the law has answered: after an analysis its numbers may be set anew."""
+        self._answers = None
+
+    @property
+    def _sizes(self) -> tuple[int, int, int]:
+        """Numbers of nodes, of displacements and of numbers of state of each."""
+        return self.points, self.directions, self.state_size
+
     @property
     def _entry(self) -> str:
         return f"contact {self.name!r}, law {self.law!r}"
 
-    def _answer(
-        self, before: Matrix, after: Matrix, state: Matrix
-    ) -> tuple[Matrix, Matrix, list[Matrix]]:
-        n, d, m = self.points, self.directions, self.state_size
+    def _answer(self, before: Matrix, after: Matrix, state: Matrix) -> list[Matrix]:
+        """Return force, state and tangents of a step."""
         answer: Any = self.step(before, after, state)
         if not (isinstance(answer, tuple) and len(answer) == 3 and _are_tangents(answer[-1])):
             raise ModelError(f"{self._entry}: step returns no (force, state, Tangents(...))")
         force, new, tangents = answer
-        shapes = [(n, m, m), (n, m, d), (n, m, d), (n, d, m), (n, d, d)]
-        parts = zip(tangents, Tangents._fields, shapes, strict=True)
-        return (
-            self._array(force, "force", (n, d)),
-            self._array(new, "state", (n, m)),
-            [self._array(one, f"tangents.{name}", shape) for one, name, shape in parts],
-        )
-
-    def _array(self, value: object, what: str, shape: tuple[int, ...]) -> Matrix:
-        try:
-            given = np.asarray(value, dtype=np.float64)
-            array = np.ascontiguousarray(np.broadcast_to(given, shape))
-        except (TypeError, ValueError):
-            got = f"of shape {value.shape}" if isinstance(value, np.ndarray) else brief(value)
-            raise ModelError(f"{self._entry}: {what} {got}; give shape {shape}") from None
-        if not np.isfinite(array).all():
-            place = tuple(np.argwhere(~np.isfinite(array))[0].tolist())
-            raise ModelError(f"{self._entry}: {what}{list(place)} is {array[place]}; give numbers")
-        return array
-
-    # ------------------------------------------------------------- tangents against differences
-
-    def _compare(self, before: Matrix, after: Matrix, state: Matrix, answer: _Answer) -> None:
-        """Refuse tangents that are no derivative of the step."""
-        force, new, tangents = answer
-        by_state, by_before, by_after, force_by_state, force_by_after = tangents
-        wholes = {
-            "state": (state, force_by_state @ by_state, by_state),
-            "before": (before, force_by_state @ by_before, by_before),
-            "after": (after, force_by_after + force_by_state @ by_after, by_after),
-        }
-        given = {"before": before, "after": after, "state": state}
-        moved = np.maximum(np.abs(before), np.abs(after)).max(initial=0.0)
-        for cause, (own, force_slope, state_slope) in wholes.items():
-            size = moved if cause != "state" else np.abs(state).max(initial=0.0)
-            size = size or moved * np.abs(self._stuck()[1]).max(initial=0.0)
-            if not size:
-                continue
-            step = _STEP * size
-            noise = [_ROUNDED * np.abs(one).max(initial=0.0) / step for one in (force, new)]
-            for column, sides in self._sides(given, cause, own, step):
-                for what, place, slope in (("force", 0, force_slope), ("state", 1, state_slope)):
-                    found = [side[place] for side in sides]
-                    self._require(what, cause, column, slope, found, noise[place])
-
-    def _sides(
-        self, given: dict[str, Matrix], cause: str, own: Matrix, step: float
-    ) -> Iterator[tuple[int, list[tuple[Matrix, Matrix]]]]:
-        """Give, column by column, the slopes of force and state from below and from above."""
-        middle = self._answer(**given)
-        for column in range(own.shape[1]):
-            sides = []
-            for side in (-step, step):
-                there = own.copy()
-                there[:, column] += side
-                force, state, _ = self._answer(**given | {cause: there})
-                sides.append(((force - middle[0]) / side, (state - middle[1]) / side))
-            yield column, sides
-
-    def _require(
-        self,
-        what: str,
-        cause: str,
-        column: int,
-        tangent: Matrix,
-        sides: list[Matrix],
-        noise: float,
-    ) -> None:
-        slope = tangent[:, :, column]
-        low, high = np.minimum(*sides), np.maximum(*sides)
-        scale = max(np.abs(tangent).max(initial=0.0), np.abs(low).max(), np.abs(high).max())
-        # At a corner every slope between those of both sides is one.
-        wrong = np.maximum(low - slope, slope - high) > _DIFFERS * scale + noise
-        if wrong.any():
-            node, row = np.argwhere(wrong)[0]
-            raise ModelError(
-                f"{self._entry}: tangents of step: {what}[{row}] by {cause}[{column}] of node "
-                f"{node} is {slope[node, row]:.6g}, differences give "
-                f"{0.5 * (low + high)[node, row]:.6g}; correct the derivative"
-            )
+        return arrays_of((force, new, *tangents), self._sizes, self._entry)
 
 
 def _are_tangents(value: object) -> bool:

@@ -249,6 +249,11 @@ class Model:
         for contact in self._own_laws:
             contact.raise_own()
 
+    def forget_own(self) -> None:
+        """Let laws in Python forget what they have answered."""
+        for contact in self._own_laws:
+            contact.forget()
+
     @cached_property
     def _own_laws(self) -> tuple[ContactLaw, ...]:
         return tuple(one for one in self.contacts if isinstance(one, ContactLaw))

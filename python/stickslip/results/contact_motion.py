@@ -50,6 +50,7 @@ class ContactMotion(Peaks):
                 )
             except ValueError as error:
                 raise ModelError(str(error)) from error
+            self.model.forget_own()
             self.model.raise_own()
             if not own.by_point:
                 forces = forces[:, own.place(point)]
