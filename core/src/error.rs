@@ -61,7 +61,7 @@ pub enum Error {
     },
     /// A contact law that has no events.
     #[error(
-        "contact {contact}: the law {law} has no events that an exact motion could be followed by; balance harmonics with forced_response instead"
+        "contact {contact}: the law {law} has no events that an exact motion could be followed by; balance harmonics with forced_response, or follow it by transient with scheme = \"rk4\""
     )]
     NoEvents {
         /// The contact, from 1.

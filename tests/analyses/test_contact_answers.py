@@ -96,3 +96,17 @@ def test_forces_of_another_shape_are_refused(force, shape):
     wrong = Wrong(["x"], k=4e3, limit=1.0)
     with pytest.raises(ss.ModelError, match=rf"force .*{shape}"):
         balance(model.replaced(contacts=[wrong]))
+
+
+def test_limit_cycles_refuse_a_law_whose_onset_is_unknown_with_a_remedy_that_works():
+    model, negative = made()[1], ss.Rayleigh(mass=-8.0)
+    with pytest.raises(ss.ModelError, match=r"nonlinear_modes\(model, \.\.\.\)\.limit_cycles\("):
+        ss.limit_cycles(model, negative, ratio=[0.6])
+    mode = ss.nonlinear_modes(model, amplitude=[1e-5, 1e-2, 3e-2], method="quasi-static")
+    assert np.isfinite(mode.limit_cycles(negative, ratio=[0.6]).amplitude("x")).all()
+
+
+def test_laws_without_events_are_sent_to_steps_in_time():
+    with pytest.raises(ss.ModelError, match=r'has no events .* scheme = "rk4"'):
+        ss.transient(made()[1], omega=150.0, periods=1)
+    assert ss.transient(made()[1], omega=150.0, periods=1, scheme="rk4").periods == 1

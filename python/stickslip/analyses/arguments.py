@@ -12,7 +12,7 @@ from stickslip.calls import outside
 from stickslip.checks import brief, unknown
 from stickslip.disk.bladed_disk import ALL_SECTORS
 from stickslip.errors import ModelError
-from stickslip.model import Model, natural_frequencies
+from stickslip.model import ContactLaw, Model, natural_frequencies
 from stickslip.model.notable import loaded_dofs, massless_dofs, physical_dofs
 from stickslip.model.state import State
 from stickslip.results.arrays import Int
@@ -34,6 +34,21 @@ def require_lowest(model: Model, mode: int) -> None:
     """Refuse the lowest mode where the structure is statically unstable with all contacts stuck."""
     if not mode and not model.travels and model.structure.unstable_dof is not None:
         natural_frequencies(model)
+
+
+def require_onset(model: Model) -> None:
+    """Refuse laws in Python alone: they do not say where their slip, and limit cycles, begin."""
+    slipping = [one for one in model.contacts if one.slips]
+    own = [one for one in slipping if isinstance(one, ContactLaw)]
+    if own and len(own) == len(slipping):
+        reason = (
+            f"contact {own[0].name!r}: the law {own[0].law!r} is written in Python and does not "
+            "say at which force it begins to slip, from where limit cycles are followed"
+        )
+        raise ModelError(
+            f"{reason}; take them of a mode, nonlinear_modes(model, ...).limit_cycles("
+            "negative_damping, ratio)"
+        )
 
 
 def driving_dofs(

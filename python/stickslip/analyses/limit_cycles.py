@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip import _core
-from stickslip.analyses.arguments import require_lowest, require_time
+from stickslip.analyses.arguments import require_lowest, require_onset, require_time
 from stickslip.analyses.cycle_assumptions import cycle_assumptions
 from stickslip.analyses.run import Progress, Run, refusals
 from stickslip.analyses.variation import variation_of
@@ -74,6 +74,7 @@ def limit_cycles(
     if settings.method == "exact":
         require_time(model)
     require_lowest(model, kept.mode)
+    require_onset(model)
     with Run("limit cycles", progress, model) as run:
         solution = negative.cycles(model, kept, run)
         arrays = CycleArrays.of(solution, negative_damping=negative.matrix)
