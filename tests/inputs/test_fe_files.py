@@ -78,6 +78,11 @@ def test_dmig_of_pyyeti_comes_back_to_its_digits(tmp_path):
     np.testing.assert_allclose(ss.read_matrix(file, "KAAX"), K, atol=5e-10 * np.abs(K).max())
     np.testing.assert_array_equal(ss.read_matrix(file, "MAAX"), M)
     assert ss.read_dofs(file, "KAAX") == ("7.1", "7.2", "7.3", "101.1", "101.2", "101.3")
+    assert ss.read_dofs(file) == ss.read_dofs(file, "KAAX")
+    with pytest.raises(ModelError, match="choose one with key"):
+        ss.read_matrix(file)
+    with pytest.raises(ModelError, match="unknown key"):
+        ss.read_dofs(file, "BAAX")
     whole = nastran.rddmig(os.fspath(file))["kaax"].to_numpy()
     np.testing.assert_array_equal(ss.read_matrix(file, "KAAX"), whole)
 

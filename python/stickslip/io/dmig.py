@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -49,7 +49,7 @@ def read_dmig(path: Path, key: Key) -> Labelled:
     used = sorted({place for one in matrices.values() for place in (*one.rows, *one.columns)})
     index = {place: row for row, place in enumerate(used)}
     made = {name: _matrix(name, entries, index) for name, entries in matrices.items()}
-    chosen = Key(path, key.name and key.name.upper()).among(made)
+    chosen = replace(key, name=key.name and key.name.upper()).among(made)
     return Labelled(made[chosen], node_names(*zip(*used, strict=True)) if used else ())
 
 

@@ -105,8 +105,9 @@ def read_dofs(path: str | os.PathLike[str], key: str | None = None) -> tuple[str
     Parameters
     ----------
     path, key
-        As of `read_matrix`: CalculiX (`.sti`, `.mas`, `.dof`), Nastran's DMIG, Abaqus' matrix input
-        format and substructures, ANSYS' `.full` and HBMAT (`.mapping`, or a matrix beside it).
+        As of `read_matrix`, and `key` may be left out: all matrices of a file have the same rows.
+        CalculiX (`.sti`, `.mas`, `.dof`), Nastran's DMIG, Abaqus' matrix input format and
+        substructures, ANSYS' `.full` and HBMAT (`.mapping`, or a matrix beside it).
 
     Raises
     ------
@@ -118,13 +119,13 @@ def read_dofs(path: str | os.PathLike[str], key: str | None = None) -> tuple[str
     if by_itself:
         with readable(file, _ending(file)):
             return by_itself(file)
-    names = _load(file, key).dofs
+    names = _load(file, key, any_will_do=True).dofs
     if names is None:
         raise ModelError(f"{file}: it does not name its rows; count them, from 0")
     return names
 
 
-def _load(file: Path, key: str | None) -> Labelled:
+def _load(file: Path, key: str | None, *, any_will_do: bool = False) -> Labelled:
     """Return what the reader of the format makes of the file."""
     if key is not None:
         text(key, f"{file}: key")
@@ -132,7 +133,7 @@ def _load(file: Path, key: str | None) -> Labelled:
     if reader is None:
         raise ModelError(f"{file}: {unknown('file ending', _ending(file), _READERS)}")
     with readable(file, _ending(file)):
-        loaded = reader(file, Key(file, key))
+        loaded = reader(file, Key(file, key, any_will_do))
         if not isinstance(loaded, Labelled):
             loaded = Labelled(loaded, None)
         if isinstance(loaded.matrix, SparseMatrix):

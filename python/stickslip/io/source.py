@@ -26,12 +26,14 @@ class Key:
 
     file: Path
     name: str | None
+    any_will_do: bool = False
+    """Whether the rows are asked for, which are those of all matrices of a file."""
 
     def among(self, known: Iterable[str]) -> str:
         """Return the name, one of those in the file; the only one need not be given."""
         names = list(known)
         if self.name is None:
-            if len(names) == 1:
+            if len(names) == 1 or (names and self.any_will_do):
                 return names[0]
             raise ModelError(
                 f"{self.file}: it holds {listed(names) or 'nothing'}; choose one with key"
