@@ -29,6 +29,14 @@ class _Plots:
 plots = _Plots()
 
 
+class InNotebooks:
+    """A result, of which notebooks show the tables."""
+
+    def _repr_html_(self) -> str | None:
+        shown: str | None = import_module("stickslip.views.notebook").html_of(self)
+        return shown
+
+
 class Drawn:
     """A function of `stickslip.plot` as a method: ``plot = Drawn("curves")``.
 

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from stickslip import _core
 from stickslip.checks import text, unknown
+from stickslip.drawn import InNotebooks
 from stickslip.errors import ModelError
 from stickslip.model import Model, PointRef
 from stickslip.results.arrays import constant
@@ -51,7 +52,7 @@ _LABELLED = {
 """Dimensions that have `Columns.labels`, with the meaning of a label."""
 
 
-class Result(Frozen, ABC):
+class Result(Frozen, InNotebooks, ABC):
     """A computed motion: immutable, with what it belongs to and what it took for granted.
 
     A further kind of result is a subclass of `ColumnResult` and a line in
