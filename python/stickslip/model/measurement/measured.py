@@ -10,7 +10,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.checks import brief, set_fields, text
+from stickslip.checks import real_array, set_fields, text
 from stickslip.errors import EntryError, ModelError
 from stickslip.model.model import Model, require_model
 from stickslip.units import physical_number, without_units
@@ -104,11 +104,7 @@ def real_numbers(
     values: ArrayLike | Sequence[float], unit: str, entry: str, above: float = -np.inf
 ) -> NDArray[np.float64]:
     """Return a list of finite numbers above a limit, or refuse it."""
-    values = without_units(values, unit, entry)
-    try:
-        found = np.atleast_1d(np.array(values, dtype=np.float64))
-    except (TypeError, ValueError):
-        raise ModelError(f"{entry}: {brief(values)} holds no real numbers; give a list") from None
+    found = np.atleast_1d(real_array(without_units(values, unit, entry), entry, "a list"))
     if found.ndim != 1 or not found.size:
         raise ModelError(f"{entry}: shape {found.shape}; give a list of numbers")
     bad = np.flatnonzero(~(np.isfinite(found) & (found > above)))
