@@ -7,6 +7,7 @@ written to `__init__.pyi` by `docs/make_stub.py`.
 from __future__ import annotations
 
 from importlib import import_module
+from sys import modules
 
 _NAMES = {
     "_core": "__version__",
@@ -84,7 +85,10 @@ def __getattr__(name: str) -> object:
     if name in _MODULES:
         return import_module(f"{__name__}.{name}")
     if name not in _HOMES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        # With name and object Python tells which name may have been meant.
+        raise AttributeError(
+            f"module {__name__!r} has no attribute {name!r}", name=name, obj=modules[__name__]
+        )
     checked = import_module(f"{__name__}.calls").checked
     value = checked(getattr(import_module(f"{__name__}.{_HOMES[name]}"), name))
     globals()[name] = value

@@ -28,6 +28,10 @@ def test_everything_exported_is_there():
 def test_unknown_export_is_an_attribute_error():
     with pytest.raises(AttributeError, match="module 'stickslip' has no attribute 'Jenkin'"):
         _ = ss.Jenkin
+    # Python looks here for what may have been meant.
+    with pytest.raises(AttributeError) as told:
+        _ = ss.Boucwen
+    assert (told.value.name, told.value.obj) == ("Boucwen", ss)
 
 
 def test_heavy_libraries_wait_for_their_use():

@@ -2,6 +2,7 @@
 
 import re
 from html import unescape
+from importlib import import_module
 from itertools import islice
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.reference import snecma_beam
+from stickslip.results.store import KINDS
 from stickslip.views.kinds import view_of
 
 GRID = np.linspace(170.0, 200.0, 9)
@@ -62,3 +64,8 @@ def test_a_result_without_a_view_is_left_to_its_text(monkeypatch):
     result = RESULTS["rest"]()
     monkeypatch.setattr(type(result), "kind", "unheard_of")
     assert result._repr_html_() is None
+
+
+def test_every_kind_of_result_has_a_plot():
+    for module, kind in KINDS.values():
+        assert callable(getattr(import_module(module), kind).plot)

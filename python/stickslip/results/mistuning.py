@@ -106,7 +106,7 @@ class MistuningStudy(ColumnResult):
     coupling_stiffness = Shown[Float]("coupling")
     patterns = Shown[Float]()
 
-    plot_distribution = Drawn("distribution")
+    plot = plot_distribution = Drawn("distribution")
 
     @cached_property
     def status(self) -> NDArray[np.object_]:

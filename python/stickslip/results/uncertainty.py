@@ -93,7 +93,7 @@ class Uncertainty(ColumnResult):
     arrays: UncertaintyArrays
     reasons: tuple[str, ...]
 
-    plot_distribution = Drawn("uncertainty_distribution")
+    plot = plot_distribution = Drawn("uncertainty_distribution")
     plot_sobol = Drawn("sobol_indices")
     plot_backbone = Drawn("backbone_band")
 
