@@ -100,6 +100,9 @@ def quantity(value: float | str, unit: str, entry: str, *, finite: bool = True) 
     """
     if isinstance(value, str):
         return _parse(value, unit, entry)
+    if isinstance(value, list | tuple):
+        told = f" = {brief(value)} is not {_kind(unit)}, but a list; give a single one"
+        raise EntryError(entry, told)
     if isinstance(value, bool) or not isinstance(value, Real):
         raise _refusal(value, unit, entry, f"is not {_kind(unit)}")
     try:

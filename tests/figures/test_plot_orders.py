@@ -41,7 +41,7 @@ def test_every_engine_order_has_limits_in_the_colour_of_its_curve(sweep, ax):
     limits, curves = lines(ax, style.LIMIT), lines(ax, style.RESPONSE)
     assert len(limits) == 6
     for order, result, curve in zip(range(3), sweep.results, curves, strict=True):
-        for line, stuck in zip(limits[2 * order : 2 * order + 2], (True, False), strict=True):
+        for line, stuck in zip(limits[order::3], (True, False), strict=True):
             omega, amplitude = limit_curve(
                 result.model, "tip", (160.0, 250.0), "half_range", stuck=stuck
             )
@@ -50,7 +50,7 @@ def test_every_engine_order_has_limits_in_the_colour_of_its_curve(sweep, ax):
             assert line.get_color() == curve.get_color()
     named = [one.get_label() for one in limits if not one.get_label().startswith("_")]
     assert named == ["stuck (linear, each engine order)", "free (linear, each engine order)"]
-    peaks = [max(one.get_ydata()) for one in limits[1::2]]
+    peaks = [max(one.get_ydata()) for one in limits[3:]]
     assert len({round(float(one), 9) for one in peaks}) == 3
 
 
@@ -68,3 +68,25 @@ def test_several_engine_orders_where_one_is_asked_are_named(sweep):
         ss.ModelError, match=r"engine_order: \[2, 3\] is not a number; give a single one"
     ):
         ss.speed_response(snecma_beam(), [10.0], dof="tip", engine_order=[2, 3])
+
+
+def test_every_stiffness_has_a_stuck_limit_and_all_one_free(ax):
+    sweep = ss.sweep(
+        snecma_beam(),
+        lambda m: ss.forced_response(m, [160.0, 250.0], harmonics=1),
+        stiffness=[1e6, 2.4e7],
+    )
+    sweep.plot("tip", ax=ax)
+    curves = lines(ax, style.RESPONSE)
+    *stuck, free = lines(ax, style.LIMIT)
+    for line, curve, result in zip(stuck, curves, sweep.results, strict=True):
+        omega, amplitude = limit_curve(
+            result.model, "tip", (160.0, 250.0), "half_range", stuck=True
+        )
+        np.testing.assert_array_equal(line.get_xdata(), omega)
+        np.testing.assert_array_equal(line.get_ydata(), amplitude)
+        assert line.get_color() == curve.get_color()
+    labels = [one.get_label() for one in (*stuck, free)]
+    assert labels[0] == "stuck (linear, each stiffness)"
+    assert labels[1].startswith("_")
+    assert (labels[2], free.get_color()) == ("free (linear)", style.GREY)

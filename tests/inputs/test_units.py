@@ -95,7 +95,7 @@ def test_a_number_or_a_text_with_a_unit_is_read_in_si(value, unit, expected):
         (np.complex128(1), "N", "is not a force"),
         (True, "N", "True is not a force"),
         (None, "N", "None is not a force"),
-        ([1.0], "N", r"\[1.0\] is not a force"),
+        ([1.0], "N", r"\[1.0\] is not a force .*, but a list; give a single one"),
         (np.array([1.0]), "N", "is not a force"),
         (1j, "N", "1j is not a force"),
     ],

@@ -66,14 +66,12 @@ def curves(
     view = _View(ax, dof, measure, omega, length, per_force, auto)
     single = len(listed) == 1
     colours = style.colours(len(listed))
-    # Every engine order meets the disk at other nodal diameters, with limits of their own.
-    waves = [(scale, rotor_order(one.model)) for one, scale in zip(listed, each, strict=True)]
-    several_orders = len({order for _, order in waves}) > 1
-    for number, wave in enumerate(dict.fromkeys(waves)):
-        alike = [one for one, own in zip(listed, waves, strict=True) if own == wave]
-        colour = colours[waves.index(wave)] if several_orders else None
-        own = replace(view, omega=wave[0], named=not number, limits=colour)
-        _draw_limits(own, alike, stuck=options["stuck"], free=options["free"])
+    for stuck, wanted in ((True, options["stuck"]), (False, options["free"])):
+        # Springs without friction have one linear limit, that at rest.
+        if stuck and not any(one.slips for result in listed for one in result.model.contacts):
+            wanted = options["stuck"] or options["free"]
+        if wanted:
+            _draw_limits(view, list(zip(listed, each, colours, strict=True)), stuck=stuck)
     for result, name, colour, scale in zip(listed, names, colours, each, strict=True):
         own = replace(view, omega=scale)
         own.draw(result, colour, name)
@@ -132,7 +130,7 @@ class _View:
     named: bool = True
     """Whether the legend names the linear limits."""
     limits: Colour | None = None
-    """Colour of the linear limits, if those of several engine orders are to be told apart."""
+    """Colour of the linear limits, if several are to be told apart."""
 
     @property
     def unit(self) -> str:
@@ -266,26 +264,51 @@ class _View:
 
 
 def _draw_limits(
-    view: _View, results: Sequence[ForcedResponse], *, stuck: bool, free: bool
+    view: _View, drawn: Sequence[tuple[ForcedResponse, Scale, Colour]], *, stuck: bool
 ) -> None:
-    """Draw the linear limits of the most strongly forced result."""
+    """Draw the linear limits, of each engine order and, stuck, of each stiffness of contacts."""
+    groups: dict[tuple[Scale, float, object], list[ForcedResponse]] = {}
+    first: dict[object, Colour] = {}
+    for result, scale, colour in drawn:
+        # Every engine order meets the disk at other nodal diameters.
+        stiffness = _stiffness(result.model) if stuck else None
+        kind = scale, rotor_order(result.model), stiffness
+        groups.setdefault(kind, []).append(result)
+        first.setdefault(kind, colour)
+    orders, values = len({kind[1] for kind in groups}), len({kind[2] for kind in groups})
+    differs = ["engine order"] * (orders > 1) + ["stiffness"] * (values > 1)
+    each = f", each {' and '.join(differs)}" if differs else ""
+    for number, (kind, results) in enumerate(groups.items()):
+        own = replace(
+            view,
+            omega=kind[0],
+            named=not number,
+            limits=first[kind] if differs else None,
+        )
+        _draw_limit(own, results, each, stuck=stuck)
+
+
+def _draw_limit(view: _View, results: Sequence[ForcedResponse], each: str, *, stuck: bool) -> None:
+    """Draw the linear limit of the most strongly forced result."""
     levels = [force_level(result.model) for result in results]
     model = results[int(np.argmax(levels))].model
     omega: Float = np.concatenate([result.omega for result in results])
     low, high = float(omega.min()), float(omega.max())
     if not model.contacts or low == high or not max(levels):
         return
-    at = "" if view.per_force or len(set(levels)) == 1 else f", {max(levels):.5g} N"
-    if view.limits is not None:
-        at = f", each engine order{at}"
-    if not any(contact.slips for contact in model.contacts):
-        # Springs without friction have one linear limit, that at rest.
-        if free or stuck:
-            view.draw_limit(model, (low, high), at, stuck=True, name="at rest")
-        return
-    for is_stuck, wanted in ((True, stuck), (False, free)):
-        if wanted:
-            view.draw_limit(model, (low, high), at, stuck=is_stuck)
+    level = "" if view.per_force or len(set(levels)) == 1 else f", {max(levels):.5g} N"
+    if any(contact.slips for contact in model.contacts):
+        view.draw_limit(model, (low, high), each + level, stuck=stuck)
+    elif stuck:
+        view.draw_limit(model, (low, high), each + level, stuck=True, name="at rest")
+
+
+def _stiffness(model: Model) -> object:
+    """Return what contacts add to a structure that they stick to."""
+    stiff = ("stiffness", "tangential_stiffness", "normal_stiffness")
+    return tuple(
+        tuple(one.adjustable().get(key, ()) for key in stiff) for one in model.contacts if one.slips
+    )
 
 
 def _shares(result: ForcedResponse, contact: PointRef) -> list[tuple[str, Float, Float]]:
