@@ -8,7 +8,7 @@ from stickslip.results.diagnostic import Severity
 
 MASS = np.diag([1.0, 0.5])
 STIFFNESS = np.array([[3e4, -1e4], [-1e4, 2.5e4]])
-DOUBTS = {"overdamped", "negative-stiffness"}
+DOUBTS = {"overdamped", "negative-stiffness", "phase-unit"}
 
 
 def model(stiffness=STIFFNESS, damping=None, contacts=None, forces=None):
@@ -114,3 +114,17 @@ def test_massless_dofs_and_units_leave_the_judgement_alone():
     beyond = np.diag([1e6, 1e-3]) + np.array([[0.0, 40.0], [40.0, 0.0]])
     assert ss.Structure(MASS, beyond, None, ["x", "rz"]).unstable_dof == "rz"
     assert ss.Structure(np.diag([1.0, 0.0]), beyond, None, ["x", "rz"]).unstable_dof == "rz"
+
+
+@pytest.mark.parametrize("name", ANALYSES)
+def test_degrees_taken_for_radians_are_a_caution(name):
+    def driven(phase):
+        forces = [ss.Force("x", 1.0), ss.Force("y", 1.0, phase=phase)]
+        return doubts(ANALYSES[name](model(forces=forces)))
+
+    for phase in (180.0, -90, 45):
+        assert driven(phase)["phase-unit"].text == (
+            f"Force 2 at 'y' has a phase of {phase:g} rad; for degrees write '{phase:g} deg'."
+        )
+    for phase in ("180 deg", 12 * np.pi, 2 * np.pi * 3 * 35 / 36, 5.0, 7.3):
+        assert not driven(phase)

@@ -69,3 +69,31 @@ def test_a_result_without_a_view_is_left_to_its_text(monkeypatch):
 def test_every_kind_of_result_has_a_plot():
     for module, kind in KINDS.values():
         assert callable(getattr(import_module(module), kind).plot)
+
+
+def test_texts_of_what_is_no_result_are_short():
+    disk = ss.BladedDisk(
+        BEAM.structure, 6, contacts=BEAM.contacts, forces=BEAM.forces, engine_order=1
+    )
+    assert repr(disk.nodal_diameters()) == "NodalDiameters(0 to 3 of 6 sectors, 3 modes each)"
+    peaks = ss.design_map(
+        lambda slip_force, stiffness: BEAM.replaced(
+            contacts=[ss.Jenkins("damper", stiffness=stiffness, slip_force=slip_force)]
+        ),
+        {"slip_force": [100.0, 300.0], "stiffness": [1e7, 2e7]},
+        dof="tip",
+        omega=(150, 260),
+    )
+    assert repr(peaks) == (
+        "DesignMap(2 values of slip_force, 2 values of stiffness, 4 peaks of 'tip' found)"
+    )
+    level = ss.damper_curve(BEAM, level=[1, 5], dof="tip")
+    assert "from 1 to 5 (all found)" in repr(level)
+
+
+@pytest.mark.parametrize("name", ["a.csv", "b.XLSX", "c.mat"])
+def test_a_result_is_not_saved_under_the_ending_of_another_format(tmp_path, name):
+    result = RESULTS["rest"]()
+    with pytest.raises(ss.ModelError, match=r"save writes NetCDF, \.nc; .* is what export writes"):
+        result.save(tmp_path / name)
+    assert not (tmp_path / name).exists()

@@ -112,6 +112,8 @@ TEXTS = {
     "negative-stiffness": "The stiffness matrix has a negative eigenvalue, mostly of dof {dof!r}: "
     "without its contacts the structure is statically unstable, and motions may be too. Check "
     "signs and supports, unless it is meant.",
+    "phase-unit": "Force {force} at {dof!r} has a phase of {phase:g} rad; for degrees write "
+    "'{phase:g} deg'.",
     "overdamped": "Damping ratio {ratio:g} is {ratio:.0%} of critical, and nothing oscillates; for "
     "{ratio:g} % give {_percent:g}.",
     "truncation": "{_what} could still change {dof!r} by {share:.1%} at omega = {omega:.6g} rad/s, "

@@ -8,6 +8,9 @@ from stickslip.model import Model
 from stickslip.model.structure import ModalDamping
 from stickslip.results.diagnostic import Diagnostic
 
+_ROUND, _DEGREES = 15.0, 5.0
+"""Phases from the first on that are multiples of the second are taken for degrees."""
+
 
 def doubts(model: Model) -> tuple[Diagnostic | None, ...]:
     """Say what of laws, damping and stiffness puts a steady motion in doubt."""
@@ -15,8 +18,8 @@ def doubts(model: Model) -> tuple[Diagnostic | None, ...]:
 
 
 def structure_doubts(model: Model) -> tuple[Diagnostic | None, ...]:
-    """Say what of a structure itself looks like a slip of sign or unit."""
-    return instability(model), _overdamped(model)
+    """Say what of a structure and its forces looks like a slip of sign or unit."""
+    return instability(model), _overdamped(model), _degrees(model)
 
 
 def uniqueness(model: Model) -> Diagnostic | None:
@@ -42,6 +45,17 @@ def instability(model: Model) -> Diagnostic | None:
 def is_unique(model: Model) -> bool:
     """Tell whether the steady motion is known to be the only one, and stable."""
     return uniqueness(model) is None and instability(model) is None
+
+
+def _degrees(model: Model) -> Diagnostic | None:
+    """Say that the phase of a force looks like one in degrees.
+
+    Phases in radians of that size come of waves, as multiples of pi: they are no round numbers.
+    """
+    for position, force in enumerate(model.forces, start=1):
+        if abs(force.phase) >= _ROUND and force.phase % _DEGREES == 0.0:
+            return told("phase-unit", force=position, dof=force.dof, phase=force.phase)
+    return None
 
 
 def _overdamped(model: Model) -> Diagnostic | None:

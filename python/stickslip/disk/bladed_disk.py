@@ -193,7 +193,7 @@ class BladedDisk(Sector):
         )
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class NodalDiameters:
     """Natural frequencies at the nodal diameters 0 to n/2, rounded down.
 
@@ -209,6 +209,10 @@ class NodalDiameters:
     """(D, N) With all contacts stuck [rad/s], ascending at each diameter."""
     slipping: NDArray[np.float64]
     """(D, N) With the chosen contact points slipping [rad/s]."""
+
+    def __repr__(self) -> str:
+        last, modes = self.diameters[-1], self.stuck.shape[1]
+        return f"NodalDiameters(0 to {last} of {self.disk.sectors} sectors, {modes} modes each)"
 
     plot = Drawn("nodal_diameters")
     plot_safe = Drawn("safe")

@@ -13,7 +13,7 @@ from stickslip.results.fields import Float
 from stickslip.results.status import Status
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class DesignMap:
     """Peaks over two parameters of a design; rows belong to the first one."""
 
@@ -33,6 +33,14 @@ class DesignMap:
     """(n, m) How each search ended, as `Status.code`."""
 
     plot = Drawn("design_map")
+
+    def __repr__(self) -> str:
+        one, other = (
+            f"{values.size} values of {name}"
+            for name, values in zip(self.names, self.values, strict=True)
+        )
+        found = int(np.isfinite(self.amplitude).sum())
+        return f"DesignMap({one}, {other}, {found} peaks of {self.dof!r} found)"
 
     @property
     def status(self) -> tuple[tuple[Status, ...], ...]:

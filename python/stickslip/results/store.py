@@ -54,6 +54,13 @@ FORMAT = 2
 
 def save(path: str | os.PathLike[str], kind: str, record: Record, model: Model) -> None:
     """Write the record of a result, also a partial one, with its model; see `Result.save`."""
+    from stickslip.results.export import FORMATS
+
+    ending = file_path(path, "path").suffix.lower()
+    if ending in FORMATS:
+        raise ModelError(
+            f"path: {brief(str(path))}: save writes NetCDF, .nc; {ending} is what export writes"
+        )
     save_record(path, kind, record.assign(model_variables(model)))
 
 
