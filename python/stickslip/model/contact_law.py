@@ -63,7 +63,9 @@ class ContactLaw(Contact):
     The law starts from the state zero at displacement zero, where nothing has slipped. With `odd`
     it promises that the opposite motion gives the opposite force and state; with `monotone` that
     the force is a monotone operator of the motion, so that a passive structure has one steady
-    motion. Every node is computed at once; the core calls `step` once per sample of a period.
+    motion. Every node is computed at once; the core calls `step` once per sample of a period, and
+    not again for what has been answered in an analysis: it may depend on nothing but its arguments
+    and on numbers that stay as they are.
 
     The tangents are compared with differences when an analysis first calls the law, and then ever
     more rarely. A law that has another derivative at a corner may return either.
