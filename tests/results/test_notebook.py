@@ -89,6 +89,10 @@ def test_texts_of_what_is_no_result_are_short():
     )
     level = ss.damper_curve(BEAM, level=[1, 5], dof="tip")
     assert "from 1 to 5 (all found)" in repr(level)
+    best = ss.optimal_damper(BEAM, dof="tip", parameter="level", bounds=(1, 5))
+    assert f"(level = {best.value:.6g}: peak" in repr(best)
+    for result in (level, best):
+        assert not any("[1]" in cell for row in cells(result._repr_html_()) for cell in row)
 
 
 @pytest.mark.parametrize("name", ["a.csv", "b.XLSX", "c.mat"])

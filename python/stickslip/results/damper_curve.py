@@ -84,10 +84,9 @@ class DamperCurve(ResidualBounds, ColumnResult):
     def __repr__(self) -> str:
         values, solved = self.values, self.arrays.solved
         found = "all found" if solved.all() else f"{solved.sum()} found"
-        unit = self.settings.variation.unit
         return (
             f"DamperCurve({values.size} values of {self.parameter} from {values.min():g} to "
-            f"{values.max():g}{'' if unit == '1' else f' {unit}'} ({found}), peak of "
+            f"{values.max():g}{self.settings.variation.behind} ({found}), peak of "
             f"{self.settings.dof!r})"
         )
 

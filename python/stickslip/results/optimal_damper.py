@@ -54,8 +54,8 @@ class OptimalDamper(Result):
     def __repr__(self) -> str:
         count = len(self.minima)
         return (
-            f"OptimalDamper({self.parameter} = {self.value:.6g} "
-            f"{self.curve.settings.variation.unit}: peak {self.amplitude:.6g} m at "
+            f"OptimalDamper({self.parameter} = {self.value:.6g}"
+            f"{self.curve.settings.variation.behind}: peak {self.amplitude:.6g} m at "
             f"{self.omega:.6g} rad/s, {count} local {'minimum' if count == 1 else 'minima'})"
         )
 

@@ -116,8 +116,8 @@ class PeriodicMotions(ColumnResult):
         count = self.arrays.omega.size
         if isinstance(index, bool) or not isinstance(index, Integral):
             raise ModelError(
-                f"index: {brief(index)} is not an integer; give a position in omega, of a curve "
-                "that which index(omega) gives"
+                f"index: {brief(index)} is not an integer; see omega for the positions, or "
+                "ask a curve for that of a frequency, index(omega)"
             )
         if not -count <= index < count:
             raise ModelError(f"index: {index}; there are {count} points, 0 to {count - 1}")

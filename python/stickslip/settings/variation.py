@@ -124,6 +124,16 @@ class Variation(ParameterMode):
             return "1"
         return UNITS[self.parameter]
 
+    @property
+    def behind(self) -> str:
+        """What stands behind a value in a text: the unit, or nothing of a ratio."""
+        return "" if self.unit == "1" else f" {self.unit}"
+
+    @property
+    def heading(self) -> str:
+        """The parameter with its unit, as tables are headed."""
+        return self.parameter if self.unit == "1" else f"{self.parameter} [{self.unit}]"
+
     def apply(self, model: Model, value: float) -> Model:
         """Return the model at a value of the parameter, or at a factor; contacts may refuse it."""
         if self.parameter == "level":

@@ -105,7 +105,7 @@ class MapView(View[StabilityMap]):
         for row in zip(*columns, strict=True):
             *numbers, stable = (f"{number:.6g}" for number in row)
             stable = "not decided" if stable == "nan" else stable
-            yield f"{variation.parameter} [{variation.unit}]", *numbers, stable
+            yield variation.heading, *numbers, stable
 
     def about(self, result: StabilityMap) -> list[Row]:
         """Say what was varied."""

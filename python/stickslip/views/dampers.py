@@ -33,7 +33,7 @@ class DamperView(View[DamperCurve]):
             yield (
                 result.settings.dof,
                 place,
-                f"{result.parameter} [{result.settings.variation.unit}]",
+                result.settings.variation.heading,
                 f"{result.values[index]:.6g}",
                 f"{result.amplitude[index] / length:#.7g}",
                 f"{result.omega[index]:#.6g}",
@@ -79,7 +79,7 @@ class OptimumView(View[OptimalDamper]):
         for minimum in result.minima:
             yield (
                 settings.dof,
-                f"{result.parameter} [{settings.variation.unit}]",
+                settings.variation.heading,
                 f"{minimum.value:.6g}",
                 f"{minimum.amplitude / length:#.7g}",
                 f"{minimum.omega:#.6g}",
