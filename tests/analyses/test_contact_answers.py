@@ -110,3 +110,17 @@ def test_laws_without_events_are_sent_to_steps_in_time():
     with pytest.raises(ss.ModelError, match=r'has no events .* scheme = "rk4"'):
         ss.transient(made()[1], omega=150.0, periods=1)
     assert ss.transient(made()[1], omega=150.0, periods=1, scheme="rk4").periods == 1
+
+
+def test_an_analysis_that_ends_beside_another_takes_nothing_from_it():
+    law = Dahl(["x"], k=4e3, limit=1.0)
+
+    class Forgetful(Dahl):
+        def step(self, before, after, state):
+            self.forget()
+            return super().step(before, after, state)
+
+    model = made()[1]
+    other = balance(model.replaced(contacts=[Forgetful(["x"], k=4e3, limit=1.0)]))
+    expected = balance(model.replaced(contacts=[law]))
+    np.testing.assert_array_equal(other.amplitude("x"), expected.amplitude("x"))

@@ -262,9 +262,11 @@ class ContactLaw(Contact):
         if self._raised is not None:
             return None
         given = np.concatenate((before.ravel(), after.ravel(), state.ravel()))
-        if self._answers is None:
-            self._answers = Answers(self._sizes)
-        answer = self._answers.find(key := given.tobytes())
+        # Another thread, whose analysis ends, may forget them at any line.
+        known = self._answers
+        if known is None:
+            known = self._answers = Answers(self._sizes)
+        answer = known.find(key := given.tobytes())
         if answer is None:
             # Motions that are no numbers come of an error of another thread: the law is not to
             # blame.
@@ -273,7 +275,7 @@ class ContactLaw(Contact):
             answer = self._taken(before, after, state, derive)
             if answer is None:
                 return None
-            self._answers.keep(key, answer)
+            known.keep(key, answer)
         force, new, *tangents = answer
         return force, new, tangents if derive else None
 
