@@ -1,7 +1,7 @@
 //! Disturbances of a motion over a stretch in which no contact changes its state.
 
 use super::modal_system::ContactState;
-use super::propagator::{Equations, Propagators, SHORT};
+use super::propagator::{Equations, Propagators, Reach};
 use super::transition::Transition;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par};
@@ -13,21 +13,24 @@ impl Transition<'_> {
         &self,
         regime: &ContactState,
         duration: f64,
+        reach: Reach,
         total: &mut Mat<f64>,
         known: &mut Propagators,
     ) -> f64 {
         let fastest = self.system.rate(0.0);
-        if duration.abs() * fastest <= SHORT {
+        // What is to go back has a step behind it that was a little too long.
+        if duration * fastest <= reach.short {
             return duration;
         }
-        self.pass(regime, total, |equations, states, inputs| {
-            known.advance(equations, regime, [duration, fastest], states, inputs)
+        let close = reach.close / fastest;
+        self.pass(regime, known.pace, total, |equations, states, inputs| {
+            known.advance(equations, regime, [duration, close], states, inputs)
         })
     }
 
     /// Takes disturbances over a short duration, or back, by power series.
     pub(super) fn catch_up(&self, regime: &ContactState, duration: f64, total: &mut Mat<f64>) {
-        self.pass(regime, total, |equations, mut states, inputs| {
+        self.pass(regime, 0.0, total, |equations, mut states, inputs| {
             equations.correct(&mut states, inputs, duration);
             (states, 0.0)
         });
@@ -38,6 +41,7 @@ impl Transition<'_> {
     fn pass(
         &self,
         regime: &ContactState,
+        pace: f64,
         total: &mut Mat<f64>,
         along: impl FnOnce(&Equations, Mat<f64>, &Mat<f64>) -> (Mat<f64>, f64),
     ) -> f64 {
@@ -51,7 +55,7 @@ impl Transition<'_> {
                 columns.push(j);
             }
         }
-        let own = self.equations(regime, &disturbed);
+        let own = self.equations(regime, pace, &disturbed);
         let factors: Vec<f64> = own.scale.iter().zip(&self.weight).map(|(s, w)| s / w).collect();
         let mut states = Mat::zeros(first, columns.len());
         let mut inputs = Mat::zeros(own.strains.len(), columns.len());
@@ -78,8 +82,9 @@ impl Transition<'_> {
         left
     }
 
-    /// The equations in one state of the contacts, with all strains that move or are disturbed.
-    fn equations(&self, regime: &ContactState, disturbed: &[bool]) -> Equations {
+    /// The equations in one state of the contacts, with all strains that move or are disturbed; in the units of
+    /// motions at a pace, or those at hand if it is 0.
+    fn equations(&self, regime: &ContactState, pace: f64, disturbed: &[bool]) -> Equations {
         let (system, modes) = (self.system, self.weight.len());
         let rates = self.strain_rates(regime);
         let mut takes_part = disturbed.to_vec();
@@ -120,7 +125,8 @@ impl Transition<'_> {
         let mut scale = Vec::with_capacity(modes);
         for (j, (square, weight)) in system.omega_squared().iter().zip(&self.weight).enumerate() {
             stiffness[(j, j)] += square;
-            scale.push(stiffness[(j, j)].abs().sqrt().max(*weight));
+            let least = if pace > 0.0 { square.abs().sqrt().max(pace) } else { *weight };
+            scale.push(stiffness[(j, j)].abs().sqrt().max(least));
         }
         for (j, s) in scale.iter().enumerate() {
             stiffness.col_as_slice_mut(j).iter_mut().for_each(|k| *k /= s);

@@ -285,6 +285,10 @@ impl PowerSeries {
             return;
         }
         for own in self.springs.chunk_by(|one, next| one.0 == next.0) {
+            if let [(i, j, k)] = own {
+                self.force[i * (DEGREE + 1) + power] = k * self.contact[j * (DEGREE + 1) + power];
+                continue;
+            }
             let parts = own.iter().map(|(_, j, k)| (*k, self.contact[j * (DEGREE + 1) + power]));
             self.force[own[0].0 * (DEGREE + 1) + power] = sum_of_products(parts);
         }

@@ -39,29 +39,36 @@ struct Rates<'a> {
 }
 
 /// A point whose velocity moves strains at other rates.
-struct Change {
+pub(super) struct Change {
     point: usize,
     /// Their coordinates, and by how much less.
     strains: Vec<(usize, f64)>,
 }
 
 impl Transition<'_> {
-    /// Takes disturbances that lag through the change at the end of a phase; `false` where that is not worth
-    /// it, or not simple.
-    pub(super) fn pass_late(
+    /// The change at the end of a phase, if disturbances may lag through it: where that is worth it, and simple.
+    pub(super) fn simple_change(
         &self,
         phase: &LinearPhase,
         next: &LinearPhase,
+    ) -> Option<Vec<Change>> {
+        let releases = phase.onset.iter().any(|onset| !onset.released.is_empty());
+        if self.weight.len() <= FEW || next.slide.is_some() || releases || !phase.turns.is_empty() {
+            return None;
+        }
+        self.changes(&phase.regime, &next.regime)
+    }
+
+    /// Takes disturbances that lag through the change at the end of a phase.
+    pub(super) fn pass_late(
+        &self,
+        [phase, next]: [&LinearPhase; 2],
+        changed: &[Change],
         lag: f64,
         total: &mut Mat<f64>,
         known: &mut Propagators,
-    ) -> bool {
+    ) {
         let (before, after) = (&phase.regime, &next.regime);
-        let releases = phase.onset.iter().any(|onset| !onset.released.is_empty());
-        if self.weight.len() <= FEW || next.slide.is_some() || releases {
-            return false;
-        }
-        let Some(changed) = self.changes(before, after) else { return false };
         let roots = self.roots();
         let [old, new] = [before, after].map(|regime| self.rates(regime, &roots));
         let (size, modes) = (total.nrows(), self.weight.len());
@@ -97,7 +104,6 @@ impl Transition<'_> {
         for at in jump.iter().flat_map(|jump| &jump.vanishing) {
             (0..total.ncols()).for_each(|j| total[(*at, j)] = 0.0);
         }
-        true
     }
 
     /// What changes; nothing if that is much, or if points press otherwise.

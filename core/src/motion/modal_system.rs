@@ -290,6 +290,14 @@ impl ModalSystem {
         }
     }
 
+    /// Modal loads, real and imaginary parts, by their harmonic.
+    pub(crate) fn modal_loads(&self) -> Vec<(usize, [Vec<f64>; 2])> {
+        let parts = |load: &[c64]| {
+            [load.iter().map(|p| p.re).collect(), load.iter().map(|p| p.im).collect()]
+        };
+        self.loads.iter().map(|(order, load)| (*order, parts(load))).collect()
+    }
+
     /// `Φᵀ C Φ η'`, times `factor`, added to `out`.
     pub(crate) fn add_damping(&self, velocity: &[f64], factor: f64, out: &mut [f64]) {
         self.damping.add_product(velocity, factor, out);

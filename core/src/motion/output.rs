@@ -7,12 +7,15 @@ use super::history::{History, Trace, TransientSettings};
 use super::microslip::Turn;
 use super::modal_system::{dot, ModalSystem};
 use super::modal_way::ModalWay;
-use super::polynomial::{sign_changes, value};
+use super::polynomial::{sign_changes, value, DEGREE};
 use super::runge_kutta::RungeKutta;
 use super::state::State;
 use crate::contact::SlipPlane;
+use crate::solve::size;
 use std::f64::consts::TAU;
 
+/// Shapes that are gone through one by one.
+const FEW: usize = 4;
 /// Share of a sampling interval by which rounding may miss an instant.
 const ROUNDING: f64 = 1e-9;
 /// Steps between two looks at whether to go on.
@@ -196,6 +199,11 @@ pub(crate) struct Extremes {
     series: Vec<f64>,
     slope: Vec<f64>,
     zeros: Vec<f64>,
+    /// Powers of the length of a stretch, and the same times their orders.
+    powers: Vec<f64>,
+    slopes: Vec<f64>,
+    /// Coefficients of a displacement.
+    own: Vec<f64>,
     /// What the modes do on a stretch, and shapes that may have an extreme there.
     way: ModalWay,
     open: Vec<usize>,
@@ -209,6 +217,16 @@ impl Extremes {
         shapes: &[Vec<f64>],
         ranges: &mut [[f64; 2]],
     ) {
+        if shapes.len() <= FEW {
+            self.measure(segment.length);
+            let mut own = std::mem::take(&mut self.own);
+            for (shape, range) in shapes.iter().zip(ranges) {
+                segment.series.write_projection(shape, &mut own);
+                self.widen_by(&own, segment.length, range);
+            }
+            self.own = own;
+            return;
+        }
         segment.series.write_way(segment.length, &mut self.way);
         let mut open = std::mem::take(&mut self.open);
         self.way.widen(shapes, ranges, &mut open);
@@ -227,17 +245,50 @@ impl Extremes {
         segment: &FlowSegment<'_>,
         ranges: &mut [[f64; 2]],
     ) {
+        self.measure(segment.length);
+        let mut own = std::mem::take(&mut self.own);
         for (point, range) in ranges.iter_mut().enumerate() {
             if system.is_felt(point) {
-                self.series.clear();
-                self.series.extend_from_slice(segment.series.contact(point));
-                rescale(&mut self.series, segment.length);
+                self.widen_by(segment.series.contact(point), segment.length, range);
             } else {
-                let shape = system.contact_shape(point).iter().copied();
-                segment.series.project(shape, segment.length, &mut self.series);
+                segment.series.write_projection(system.contact_shape(point), &mut own);
+                self.widen_by(&own, segment.length, range);
             }
-            self.widen(range);
         }
+        self.own = own;
+    }
+
+    /// Prepares bounds on how far polynomials move over a length.
+    fn measure(&mut self, length: f64) {
+        self.powers.clear();
+        self.powers.extend((0..=DEGREE).scan(1.0, |power, _| {
+            let own = *power;
+            *power *= length;
+            Some(own)
+        }));
+        self.slopes.clear();
+        let orders = self.powers.iter().enumerate();
+        self.slopes.extend(orders.map(|(order, power)| order as f64 * power));
+    }
+
+    /// Widens a range by the values of a polynomial over the length that was measured.
+    fn widen_by(&mut self, a: &[f64], length: f64, range: &mut [f64; 2]) {
+        let reach = size(&a[1..], &self.powers[1..]);
+        if a[0] + reach <= range[1] && a[0] - reach >= range[0] {
+            return;
+        }
+        // It rises or falls all the way.
+        if (a[1] * length).abs() > size(&a[2..], &self.slopes[2..]) {
+            for value in [a[0], value(a, length)] {
+                range[0] = range[0].min(value);
+                range[1] = range[1].max(value);
+            }
+            return;
+        }
+        self.series.clear();
+        self.series.extend_from_slice(a);
+        rescale(&mut self.series, length);
+        self.widen(range);
     }
 
     /// Least `M² − |t|²` of a contact in a plane on a stretch of the motion, relative to the greatest M².

@@ -1,7 +1,9 @@
 //! Polynomials on the unit interval: values and zeros, none of them missed.
 //!
 //! A bound on the second derivative tells whether a sub-interval can hold a zero, and whether the
-//! polynomial is monotone there; where it tells neither, the interval is halved.
+//! polynomial is monotone there; where it tells neither, the interval is halved. Over steps of many radians of
+//! small fast modes the powers nearly cancel: there the control points of Bézier bound polynomial and derivatives
+//! much more closely than the coefficients (Farouki 2012).
 
 /// Highest power of the series of a motion.
 pub(super) const DEGREE: usize = 32;
@@ -11,6 +13,10 @@ pub(super) const TRUNCATION: f64 = 1e-17;
 const GRAZE: f64 = 1e-7;
 /// Width at which a change of sign counts as located.
 const ROUNDING: f64 = 1e-15;
+/// Error of control points relative to the sum of all coefficients.
+const OF_POINTS: f64 = 1e-14;
+/// Coefficients that have control points: of series of motions and their derivatives.
+const POINTS: usize = DEGREE + 1;
 
 /// Value of `Σ a_n xⁿ`.
 #[inline]
@@ -66,8 +72,39 @@ fn scan(a: &[f64], visit: &mut dyn FnMut(f64) -> bool) {
     for (n, a) in a.iter().enumerate().skip(2) {
         bend += (n * (n - 1)) as f64 * a.abs();
     }
-    let whole = [(0.0, value(a, 0.0)), (1.0, value(a, 1.0))];
-    Search { a, bend }.descend(whole, visit);
+    let ends = [value(a, 0.0), value(a, 1.0)];
+    let least = ends[0].abs().min(ends[1].abs());
+    let same = (ends[0] > 0.0) == (ends[1] > 0.0);
+    let plain = if same { least > 0.125 * bend } else { (ends[1] - ends[0]).abs() > bend };
+    if !plain && a.len() <= POINTS {
+        let (points, error) = control_points(a);
+        let points = &points[..a.len()];
+        if same && points.iter().all(|b| (*b > 0.0) == (ends[0] > 0.0) && b.abs() > error) {
+            return;
+        }
+        let second = points.windows(3).map(|b| (b[2] - 2.0 * b[1] + b[0]).abs());
+        let turn = second.fold(0.0, f64::max) + 4.0 * error;
+        bend = bend.min((a.len() * a.len()) as f64 * turn);
+    }
+    Search { a, bend }.descend([(0.0, ends[0]), (1.0, ends[1])], visit);
+}
+
+/// Control points of a polynomial on the unit interval, between which it stays, and their error.
+fn control_points(a: &[f64]) -> ([f64; POINTS], f64) {
+    let mut points = [0.0; POINTS];
+    let degree = a.len().saturating_sub(1);
+    let (mut choices, mut sum) = (1.0, 0.0);
+    for (i, (point, a)) in points.iter_mut().zip(a).enumerate() {
+        *point = a / choices;
+        sum += a.abs();
+        choices *= (degree - i) as f64 / (i + 1) as f64;
+    }
+    for first in 1..a.len() {
+        for j in (first..a.len()).rev() {
+            points[j] += points[j - 1];
+        }
+    }
+    (points, OF_POINTS * sum)
 }
 
 struct Search<'a> {
@@ -163,6 +200,32 @@ mod tests {
         assert_eq!(first_zero(&a), None);
         assert!((first_zero(&from_roots(&[1.0])).unwrap() - 1.0).abs() < 1e-14);
         assert_eq!(first_zero(&[1.0, -0.5]), None);
+    }
+
+    /// A slow motion with a fast mode that turns by many radians, whose powers nearly cancel.
+    #[test]
+    fn zeros_beside_fast_modes_are_found_where_they_are() {
+        for (offset, expected) in [(0.3, 0), (-0.3, 1)] {
+            let mut a = vec![0.0; POINTS];
+            (a[0], a[1], a[2]) = (offset, 1.0, 0.2);
+            let mut power = 1e-3;
+            for (n, a) in a.iter_mut().enumerate() {
+                *a += [power, 0.0, -power, 0.0][n % 4];
+                power *= 9.0 / (n + 1) as f64;
+            }
+            let (points, error) = control_points(&a);
+            let [low, high] = [f64::min, f64::max].map(|of| points.iter().copied().fold(a[0], of));
+            assert!(error < 1e-13);
+            for x in (0..=100).map(|x| f64::from(x) / 100.0) {
+                assert!(low <= value(&a, x) && value(&a, x) <= high);
+            }
+            // Much closer than the sum of the coefficients says.
+            assert!(high - low < 1.3 && reach_of(&a, 1.0) > 4.0);
+            let mut zeros = Vec::new();
+            sign_changes(&a, &mut zeros);
+            assert_eq!(zeros.len(), expected);
+            assert!(zeros.iter().all(|x| value(&a, *x).abs() < 1e-14));
+        }
     }
 
     #[test]

@@ -201,13 +201,9 @@ impl PowerSeries {
         velocity.iter_mut().for_each(|v| *v *= self.rate);
     }
 
-    /// Writes the motion at many instants τ.
-    pub(crate) fn write_values(
-        &self,
-        instants: impl ExactSizeIterator<Item = f64>,
-        values: &mut Values,
-    ) {
-        let (count, points) = (instants.len(), self.force.len() / (DEGREE + 1));
+    /// Writes the motion at many instants of a length of τ, given by the powers of their shares of it.
+    pub(crate) fn write_values(&self, shares: &Mat<f64>, length: f64, values: &mut Values) {
+        let (count, points) = (shares.ncols(), self.force.len() / (DEGREE + 1));
         let Values { powers, slopes, displacement, velocity, speed, force } = values;
         for (matrix, rows) in [
             (powers, DEGREE + 1),
@@ -220,13 +216,18 @@ impl PowerSeries {
             matrix.resize_with(rows, count, |_, _| 0.0);
         }
         let Values { powers, slopes, displacement, velocity, speed, force } = values;
-        for (j, tau) in instants.enumerate() {
+        let (mut lengths, mut rates) = ([1.0; DEGREE + 1], [0.0; DEGREE]);
+        for n in 1..=DEGREE {
+            lengths[n] = length * lengths[n - 1];
+            rates[n - 1] = self.rate * n as f64;
+        }
+        for j in 0..count {
             let (power, slope) = (powers.col_as_slice_mut(j), slopes.col_as_slice_mut(j));
-            (power[0], slope[0]) = (1.0, 0.0);
-            for n in 1..=DEGREE {
-                power[n] = tau * power[n - 1];
-                slope[n] = self.rate * n as f64 * power[n - 1];
-            }
+            let parts = power.iter_mut().zip(shares.col_as_slice(j)).zip(&lengths);
+            parts.for_each(|((power, share), length)| *power = share * length);
+            slope[0] = 0.0;
+            let parts = slope[1..].iter_mut().zip(&*power).zip(&rates);
+            parts.for_each(|((slope, power), rate)| *slope = rate * power);
         }
         let modal = MatRef::from_column_major_slice(&self.modal, self.modes, DEGREE + 1);
         let [contacts, forces] = [&self.contact, &self.force]
@@ -268,6 +269,14 @@ impl PowerSeries {
     /// Modal displacements at the start.
     pub(super) fn displacement(&self) -> &[f64] {
         &self.modal[..self.modes]
+    }
+
+    /// Writes the coefficients of `Σ_j shape_j η_j`.
+    pub(super) fn write_projection(&self, shape: &[f64], out: &mut Vec<f64>) {
+        out.clear();
+        out.extend(
+            self.modal.chunks_exact(self.modes).map(|powers| crate::solve::dot(shape, powers)),
+        );
     }
 
     /// Writes the coefficients of `Σ_j shape_j η_j` over the window `[0, length]` of τ, scaled to

@@ -47,15 +47,19 @@ impl Blocks {
         vectors: impl Iterator<Item = (usize, [f64; N])> + Clone,
         out: &mut [Vec<f64>; N],
     ) {
-        out.iter_mut().for_each(Vec::clear);
         if self.plain {
-            for row in self.narrow.chunks_exact(self.columns.max(1)) {
-                for (n, out) in out.iter_mut().enumerate() {
-                    out.push(vectors.clone().map(|(j, x)| row[j] * x[n]).sum::<f64>());
+            let rows = self.narrow.chunks_exact(self.columns.max(1));
+            out.iter_mut().for_each(|out| out.resize(rows.len(), 0.0));
+            for (place, row) in rows.enumerate() {
+                let mut sums = [0.0; N];
+                for (j, x) in vectors.clone() {
+                    sums.iter_mut().zip(x).for_each(|(sum, x)| *sum += row[j] * x);
                 }
+                out.iter_mut().zip(sums).for_each(|(out, sum)| out[place] = sum);
             }
             return;
         }
+        out.iter_mut().for_each(Vec::clear);
         pulp::Arch::new().dispatch(Products { blocks: self, vectors, out });
     }
 }

@@ -13,13 +13,11 @@ use crate::solve::dot;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par};
 
-/// Numbers of all exponentials that are kept.
+/// Numbers of all exponentials that are kept, and how many of them.
 const ROOM: usize = 1 << 23;
-/// Length of a stretch, or change of it, in units of the fastest rate, over which a power series takes fewer
-/// operations than an exponential.
-const CLOSE: f64 = 1.0;
-/// The same of a stretch that takes no exponential of its own.
-pub(super) const SHORT: f64 = 3.0;
+const MOST: usize = 1 << 9;
+/// Ratio of the frequencies of two motions from which on exponentials of one serve for the other no more.
+const ALIKE: f64 = 2.0;
 /// Term of such a series, relative to the states, that is none.
 const ROUNDING: f64 = 1e-18;
 /// Modes up to which products of matrices of any size cost the same.
@@ -34,14 +32,37 @@ struct Propagator {
     strains: Vec<usize>,
     duration: f64,
     exponential: Driven,
+    /// When it served last.
+    served: usize,
 }
 
-/// Those of the stretches of one motion: of another one next to it, stretches are a little longer or shorter.
+/// Those of the stretches of some motions: of another one next to them, stretches are a little longer or shorter.
 #[derive(Debug, Default)]
 pub(crate) struct Propagators {
     known: Vec<Propagator>,
     numbers: usize,
+    /// Stretches so far.
+    count: usize,
+    /// The frequency whose motions have the units of displacements that all exponentials have \[rad/s\].
+    pub(super) pace: f64,
     pub(super) quadrature: Quadrature,
+}
+
+/// How far the end of a step may be from that of its stretch, in units of the fastest rate.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Reach {
+    /// Stretches up to this length take no step of their own.
+    pub(super) short: f64,
+    /// Steps that are known serve up to this difference.
+    pub(super) close: f64,
+}
+
+impl Reach {
+    /// Where a power series of all disturbances makes up for it: it takes fewer operations than an exponential.
+    pub(super) const CAUGHT_UP: Self = Self { short: 3.0, close: 1.0 };
+    /// Where disturbances lag through a change of regime, at the price of a few vectors; the rounding of their
+    /// power series grows with the exponential of the lag.
+    pub(super) const LAGGING: Self = Self { short: 6.0, close: 6.0 };
 }
 
 /// Equations of the disturbances in one state of the contacts, in coordinates `(s η, η')`.
@@ -222,33 +243,57 @@ impl pulp::NullaryFnOnce for AddTerm<'_> {
 }
 
 impl Propagators {
-    /// Takes states over a stretch at these rates, or nearly so; the duration that is left.
+    /// Prepares for motions of so many modes at a frequency [rad/s].
+    pub(crate) fn serve(&mut self, omega: f64, modes: usize) {
+        let ratio = omega / self.pace;
+        // Of few modes exponentials are as cheap as the search for them.
+        let alike = if modes <= FEW { 1.0 } else { ALIKE };
+        if !(1.0 / alike..=alike).contains(&ratio) {
+            (self.known, self.numbers, self.pace) = (Vec::new(), 0, omega);
+        }
+    }
+
+    /// Takes states over a stretch at these rates, or nearly so, to within a length; the duration that is left.
     pub(super) fn advance(
         &mut self,
         equations: &Equations,
         regime: &ContactState,
-        [duration, fastest]: [f64; 2],
+        [duration, close]: [f64; 2],
         states: Mat<f64>,
         inputs: &Mat<f64>,
     ) -> (Mat<f64>, f64) {
-        let close = |own: &&Propagator| {
-            (own.duration - duration).abs() * fastest <= CLOSE
-                && own.points == regime.points
-                && own.strains == equations.strains
+        self.count += 1;
+        let off = |own: &Propagator| (own.duration - duration).abs();
+        let serves = |own: &&mut Propagator| {
+            off(own) <= close && own.points == regime.points && own.strains == equations.strains
         };
-        if let Some(own) = self.known.iter().find(close) {
+        let closest = |a: &&mut Propagator, b: &&mut Propagator| off(a).total_cmp(&off(b));
+        if let Some(own) = self.known.iter_mut().filter(serves).min_by(closest) {
+            own.served = self.count;
             let states = own.exponential.applied(states.as_ref(), inputs.as_ref());
             return (states, duration - own.duration);
         }
         let exponential = equations.exponential(duration);
         let states = exponential.applied(states.as_ref(), inputs.as_ref());
-        let numbers = exponential.rows.nrows() * exponential.rows.ncols();
-        if self.numbers + numbers <= ROOM {
-            self.numbers += numbers;
-            let (points, strains) = (regime.points.clone(), equations.strains.clone());
-            self.known.push(Propagator { points, strains, duration, exponential });
-        }
+        let (points, strains) = (regime.points.clone(), equations.strains.clone());
+        self.keep(Propagator { points, strains, duration, exponential, served: self.count });
         (states, 0.0)
+    }
+
+    /// Keeps an exponential in the place of those that have not served for longest.
+    fn keep(&mut self, own: Propagator) {
+        let numbers =
+            |own: &Propagator| own.exponential.rows.nrows() * own.exponential.rows.ncols();
+        if numbers(&own) > ROOM {
+            return;
+        }
+        self.numbers += numbers(&own);
+        while self.numbers > ROOM || self.known.len() >= MOST {
+            let all = self.known.iter().enumerate();
+            let Some((oldest, _)) = all.min_by_key(|(_, one)| one.served) else { break };
+            self.numbers -= numbers(&self.known.swap_remove(oldest));
+        }
+        self.known.push(own);
     }
 }
 

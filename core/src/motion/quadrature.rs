@@ -1,18 +1,41 @@
 //! Gauss-Legendre quadrature on the unit interval.
 
+use super::polynomial::DEGREE;
+use faer::Mat;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
 /// Nodes and weights by number of nodes, each computed once.
 #[derive(Debug, Default)]
 pub(crate) struct Quadrature {
-    rules: BTreeMap<usize, Vec<(f64, f64)>>,
+    rules: BTreeMap<usize, Rule>,
+}
+
+/// A rule with the powers of its nodes that the series of a motion has, one column each.
+#[derive(Debug)]
+struct Rule {
+    nodes: Vec<(f64, f64)>,
+    powers: Mat<f64>,
 }
 
 impl Quadrature {
     /// The rule with `count` nodes, exact for polynomials of degree `2 count − 1`.
     pub(crate) fn rule(&mut self, count: usize) -> &[(f64, f64)] {
-        self.rules.entry(count).or_insert_with(|| gauss_legendre(count))
+        &self.known(count).nodes
+    }
+
+    /// The same with the powers of its nodes.
+    pub(crate) fn rule_of_series(&mut self, count: usize) -> (&[(f64, f64)], &Mat<f64>) {
+        let own = self.known(count);
+        (&own.nodes, &own.powers)
+    }
+
+    fn known(&mut self, count: usize) -> &Rule {
+        self.rules.entry(count).or_insert_with(|| {
+            let nodes = gauss_legendre(count);
+            let powers = Mat::from_fn(DEGREE + 1, count, |n, node| nodes[node].0.powi(n as i32));
+            Rule { nodes, powers }
+        })
     }
 }
 

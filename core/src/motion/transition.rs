@@ -15,7 +15,7 @@ use super::linear_phase::{LinearPhase, Onset};
 use super::loop_disturbance::LoopDisturbance;
 use super::modal_system::{ContactState, ModalSystem};
 use super::power_series::PowerSeries;
-use super::propagator::Propagators;
+use super::propagator::{Propagators, Reach};
 use super::state::State;
 use crate::contact::PointState;
 use faer::Mat;
@@ -141,14 +141,19 @@ impl<'a> Transition<'a> {
         // By how long the disturbances lag behind.
         let mut lag = 0.0;
         for (number, phase) in phases.iter().enumerate() {
+            let change = phases
+                .get(number + 1)
+                .and_then(|next| Some((next, self.simple_change(phase, next)?)));
             if let Some((series, length)) = &phase.slide {
                 self.slide(&phase.regime, series, *length, &mut total, loops);
             } else {
-                lag = self.advance(&phase.regime, lag + phase.duration, &mut total, known);
+                let reach = if change.is_some() { Reach::LAGGING } else { Reach::CAUGHT_UP };
+                let duration = lag + phase.duration;
+                lag = self.advance(&phase.regime, duration, reach, &mut total, known);
             }
             if lag != 0.0 {
-                let next = phases.get(number + 1).filter(|_| phase.turns.is_empty());
-                if next.is_some_and(|next| self.pass_late(phase, next, lag, &mut total, known)) {
+                if let Some((next, changed)) = change {
+                    self.pass_late([phase, next], &changed, lag, &mut total, known);
                     continue;
                 }
                 self.catch_up(&phase.regime, lag, &mut total);

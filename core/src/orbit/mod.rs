@@ -16,6 +16,7 @@ mod periodic;
 mod pieces;
 mod plan;
 mod price;
+mod reading;
 mod remembered_turns;
 mod rescue;
 mod residual;

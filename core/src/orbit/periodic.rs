@@ -2,6 +2,7 @@
 
 use super::closed::{left_error, Orbit};
 use super::plan::Plan;
+use super::reading::{misses, Reading};
 use super::rotation::Rotation;
 use super::settings::OrbitSettings;
 use super::shooting::Shooting;
@@ -10,8 +11,8 @@ use super::start::start_of;
 use crate::balance::{Kept, Point, PointStatus, Progress, Unknowns};
 use crate::contact::Residual;
 use crate::model::Model;
-use crate::motion::{ModalSystem, Quadrature, State};
-use crate::solve::{newton, norm, NewtonSettings, Outcome, System as _};
+use crate::motion::{ModalSystem, Propagators, Quadrature, State};
+use crate::solve::{newton, NewtonSettings, Outcome, System as _};
 use crate::timing::Profile;
 use crate::Error;
 use faer::c64;
@@ -43,22 +44,13 @@ pub struct PeriodicOrbits<'a> {
     pub(super) balanced: Option<Unknowns>,
     pub(super) beyond: bool,
     pub(super) quadrature: Quadrature,
+    /// What is known of the stretches of earlier orbits.
+    pub(super) propagators: Propagators,
     pub(super) progress: &'a Progress<'a>,
     pub(super) kept: Option<&'a Kept<Orbit>>,
     pub(super) share: f64,
     /// Steps of the flow, transition matrices and time.
     pub(crate) profile: Profile,
-}
-
-/// What a pass along an orbit tells.
-struct Reading {
-    orbit: Orbit,
-    /// Whether a contact in a plane touches its limit.
-    touches: bool,
-    /// Closing error, relative to the motion, and the step that would close it, if there is one.
-    closing: f64,
-    error: f64,
-    left: Option<Vec<f64>>,
 }
 
 impl<'a> Plan<'a> {
@@ -71,6 +63,7 @@ impl<'a> Plan<'a> {
             balanced: None,
             beyond: false,
             quadrature: Quadrature::default(),
+            propagators: Propagators::default(),
             progress,
             kept: None,
             share: 0.0,
@@ -182,11 +175,25 @@ impl<'a> PeriodicOrbits<'a> {
         if let Some(rotation) = self.plan.rotation {
             shooting.rotate(rotation, &system);
         }
-        let solved = self.shoot(&mut shooting, omega, neighbour);
+        shooting.exchange(&mut self.propagators);
+        let found = self.solve_by(&mut shooting, omega, neighbour);
+        shooting.exchange(&mut self.propagators);
+        found
+    }
+
+    /// The same by shooting that is prepared.
+    fn solve_by(
+        &mut self,
+        shooting: &mut Shooting<'_>,
+        omega: f64,
+        neighbour: Option<&State>,
+    ) -> Result<Orbit, Error> {
+        let system = shooting.coordinates.system();
+        let solved = self.shoot(shooting, omega, neighbour);
         let solved = solved.map(|(mut y, mut iterations, closed)| {
             let (residual, newton) = (self.plan.settings.residual, self.newton());
             let assumption = Assumption { residual, sliders: &self.sliders };
-            let chosen = choose(&mut shooting, assumption, &mut y, newton, &mut iterations);
+            let chosen = choose(shooting, assumption, &mut y, newton, &mut iterations);
             (y, iterations, closed, chosen)
         });
         let steps = shooting.flow.steps;
@@ -199,16 +206,16 @@ impl<'a> PeriodicOrbits<'a> {
         }
         if !closed || chosen == Chosen::Lost {
             // What is far from closing is not worth a reading.
-            let (closing, _) = misses(&mut shooting, &y);
+            let (closing, _) = misses(shooting, &y);
             if closing.is_nan() && shooting.interrupted() {
                 return Ok(self.empty(omega, PointStatus::NotComputed));
             }
             if closing.is_nan() || closing > NEARLY || chosen == Chosen::Lost {
                 self.profile.evaluations += shooting.flow.steps - steps;
-                return Ok(self.unclosed(omega, &shooting, closing, iterations));
+                return Ok(self.unclosed(omega, shooting, closing, iterations));
             }
         }
-        let mut read = self.read(&mut shooting, omega, &y);
+        let mut read = self.read(shooting, omega, &y);
         if read.closing.is_nan() && shooting.interrupted() {
             return Ok(self.empty(omega, PointStatus::NotComputed));
         }
@@ -218,17 +225,17 @@ impl<'a> PeriodicOrbits<'a> {
             && chosen == Chosen::Inside
         {
             let mut closer = y.clone();
-            let report = newton(&mut shooting, &mut closer, self.newton());
+            let report = newton(shooting, &mut closer, self.newton());
             iterations += report.iterations;
             if report.outcome == Outcome::Converged {
                 y = closer;
             }
-            read = self.read(&mut shooting, omega, &y);
+            read = self.read(shooting, omega, &y);
         }
         self.profile.evaluations += shooting.flow.steps - steps;
         let Reading { mut orbit, touches, closing, left, .. } = read;
         if closing.is_nan() || closing > CLOSED {
-            return Ok(self.unclosed(omega, &shooting, closing, iterations));
+            return Ok(self.unclosed(omega, shooting, closing, iterations));
         }
         let Some(left) = left else {
             // Contacts have let go of a body that they alone hold: it may as well stand elsewhere.
@@ -251,7 +258,7 @@ impl<'a> PeriodicOrbits<'a> {
         }
         orbit.response.residual = closing;
         orbit.response.iterations = iterations;
-        orbit.response.error_estimate = left_error(&shooting, self.plan.observe, &left);
+        orbit.response.error_estimate = left_error(shooting, self.plan.observe, &left);
         if let Some((multipliers, neutral)) = known {
             orbit.neutral = neutral;
             // Where a limit is touched they are those of disturbances away from it: what grows there
@@ -282,27 +289,6 @@ impl<'a> PeriodicOrbits<'a> {
         orbit.response.residual = closing;
         orbit.response.iterations = iterations;
         orbit
-    }
-
-    /// Passes along the orbit that closes at the unknowns `y` and reads it off.
-    fn read(&mut self, shooting: &mut Shooting<'_>, omega: f64, y: &[f64]) -> Reading {
-        let start = std::time::Instant::now();
-        let empty = self.empty(omega, PointStatus::Converged);
-        let (settings, quadrature) = (&self.plan.settings, &mut self.quadrature);
-        let (orbit, touches) = empty.read(shooting, y, settings, self.plan.observe, quadrature);
-        self.profile.recovery += start.elapsed();
-        let (closing, residual) = misses(shooting, y);
-        let size = norm(y).max(f64::MIN_POSITIVE);
-        let mut left = vec![0.0; y.len()];
-        let determined =
-            residual.iter().all(|r| r.is_finite()) && shooting.solve(&residual, &mut left);
-        Reading {
-            orbit,
-            touches,
-            closing,
-            error: norm(&left) / size,
-            left: determined.then_some(left),
-        }
     }
 
     /// The orbit whose sliders are displaced by `sliders` \[m\] from rest, as far as Coulomb allows;
@@ -389,11 +375,4 @@ impl<'a> PeriodicOrbits<'a> {
         }
         Some((y, iterations, false))
     }
-}
-
-/// Closing error of an orbit, relative to the motion, and as it is.
-fn misses(shooting: &mut Shooting<'_>, y: &[f64]) -> (f64, Vec<f64>) {
-    let mut residual = vec![0.0; y.len()];
-    shooting.residual(y, &mut residual);
-    (norm(&residual) / norm(y).max(f64::MIN_POSITIVE), residual)
 }

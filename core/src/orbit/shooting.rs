@@ -113,6 +113,11 @@ impl<'a> Shooting<'a> {
         }
     }
 
+    /// Takes over what is known of stretches of other motions, and gives it back.
+    pub(super) fn exchange(&mut self, known: &mut Propagators) {
+        std::mem::swap(&mut self.propagators, known);
+    }
+
     /// Has contacts without sliders keep what a residual traction says.
     pub(super) fn assume(&mut self, residual: Residual) {
         self.memory.assume(residual);
@@ -307,6 +312,8 @@ impl<'a> Shooting<'a> {
             let passes = self.price();
             self.flow.charge((passes * self.steps as f64) as usize);
         }
+        let modes = self.coordinates.system().modes();
+        self.propagators.serve(std::f64::consts::TAU / self.period, modes);
         let (coordinates, known) = (&self.coordinates, &mut self.propagators);
         let along = self.memory.along(coordinates, &self.phases, &self.held, &self.begun, known);
         let derivative = match &self.rotation {

@@ -5,6 +5,7 @@ use crate::contact::{PointState, PointSummary, SlipPlane};
 use crate::motion::{
     ContactState, Event, Extremes, FlowEvent, FlowSegment, ModalSystem, Quadrature, Turn, Values,
 };
+use crate::solve::dot;
 use faer::linalg::matmul::matmul;
 use faer::{c64, Accum, Mat, Par};
 use std::f64::consts::TAU;
@@ -25,16 +26,21 @@ pub(super) struct Survey<'a> {
     omega: f64,
     half_wave: bool,
     orders: usize,
+    /// Orders that do not vanish.
+    present: Vec<usize>,
     quadrature: &'a mut Quadrature,
-    /// Harmonics of the modes and, behind them, of the contact forces, order after order.
+    /// Harmonics of the modes and, behind them, of the contact forces, order after order; once all is seen.
     series: Vec<c64>,
     /// Rows that give the observed DOFs, and after them the contact displacements.
     shapes: Vec<Vec<f64>>,
     extremes: Extremes,
-    /// The motion at the nodes of a stretch, cos and −sin of all orders there, and sums of products of both.
+    /// The motion at the nodes of a stretch, cos and −sin of all orders there, and sums of products of both, of
+    /// modes and of contact forces, over all stretches.
     values: Values,
     waves: Mat<f64>,
-    sums: Mat<f64>,
+    sums: [Mat<f64>; 2],
+    /// Modal loads of an order, with its phase.
+    loads: Vec<(usize, [Vec<f64>; 2])>,
     /// Least distance of each contact in a plane from its limit while it sticks, relative to it.
     room: Vec<f64>,
     /// Lowest and highest value of each shape.
@@ -59,19 +65,23 @@ impl<'a> Survey<'a> {
             .map(|&dof| system.shape(dof).collect())
             .chain((0..system.points()).map(|point| system.contact_shape(point).to_vec()))
             .collect();
+        let step = if half_wave { 2 } else { 1 };
+        let present: Vec<usize> = (usize::from(half_wave)..=highest).step_by(step).collect();
         Self {
             system,
             omega,
             half_wave,
             orders: highest + 1,
             quadrature,
-            series: vec![c64::new(0.0, 0.0); (highest + 1) * (system.modes() + system.points())],
+            series: Vec::new(),
+            sums: [system.modes(), system.points()].map(|rows| Mat::zeros(rows, 2 * present.len())),
+            present,
+            loads: system.modal_loads(),
             range: vec![[f64::INFINITY, f64::NEG_INFINITY]; shapes.len()],
             shapes,
             extremes: Extremes::default(),
             values: Values::default(),
             waves: Mat::new(),
-            sums: Mat::new(),
             room: vec![f64::INFINITY; system.planes().len()],
             contacts: vec![PointSummary::default(); system.points()],
             events: Vec::new(),
@@ -101,28 +111,26 @@ impl<'a> Survey<'a> {
     }
 
     fn integrate(&mut self, segment: &FlowSegment<'_>) {
-        let (system, modes, points) = (self.system, self.system.modes(), self.system.points());
+        let system = self.system;
         let angle = self.omega * segment.duration();
         let count = nodes(segment, angle * self.orders as f64);
-        let Self { quadrature, values, waves, sums, .. } = self;
-        let rule = quadrature.rule(count);
-        segment.series.write_values(rule.iter().map(|(x, _)| x * segment.length), values);
+        let Self { quadrature, values, waves, sums, present, .. } = self;
+        let (rule, powers) = quadrature.rule_of_series(count);
+        segment.series.write_values(powers, segment.length, values);
         let slipping = Slipping::of(system, segment.regime);
-        let (mut damping, mut load) = (vec![0.0; modes], vec![0.0; modes]);
-        let step = if self.half_wave { 2 } else { 1 };
-        let orders: Vec<usize> = (usize::from(self.half_wave)..self.orders).step_by(step).collect();
-        waves.resize_with(2 * orders.len(), count, |_, _| 0.0);
+        let mut damping = vec![0.0; system.modes()];
+        waves.resize_with(2 * present.len(), count, |_, _| 0.0);
         for (node, &(x, weight)) in rule.iter().enumerate() {
             let velocity = values.velocity.col_as_slice(node);
             let phase = self.omega * segment.start + x * angle;
             damping.fill(0.0);
             system.add_damping(velocity, 1.0, &mut damping);
-            load.fill(0.0);
-            system.add_load(phase, 1.0, &mut load);
             let time = weight * segment.duration();
-            for j in 0..modes {
-                self.viscous += time * damping[j] * velocity[j];
-                self.work += time * load[j] * velocity[j];
+            self.viscous += time * dot(&damping, velocity);
+            for (order, load) in &self.loads {
+                let (sin, cos) = (*order as f64 * phase).sin_cos();
+                let [re, im] = [0, 1].map(|part| dot(&load[part], velocity));
+                self.work += time * (re * cos - im * sin);
             }
             let [speed, force] = [&values.speed, &values.force].map(|all| all.col_as_slice(node));
             let share = time * self.omega / TAU;
@@ -144,21 +152,28 @@ impl<'a> Survey<'a> {
             let (mut rotation, stride) =
                 if self.half_wave { (turn, turn * turn) } else { (c64::new(1.0, 0.0), turn) };
             let wave = waves.col_as_slice_mut(node).chunks_exact_mut(2);
-            for (order, wave) in orders.iter().zip(wave) {
+            for (order, wave) in present.iter().zip(wave) {
                 let weight = rotation * if *order == 0 { share } else { 2.0 * share };
                 wave.copy_from_slice(&[weight.re, weight.im]);
                 rotation *= stride;
             }
         }
-        for (first, motion) in [(0, &values.displacement), (modes, &values.force)] {
-            sums.resize_with(motion.nrows(), waves.nrows(), |_, _| 0.0);
-            let (to, nodes) = (sums.as_mut(), waves.transpose());
-            matmul(to, Accum::Replace, motion.as_ref(), nodes, 1.0, Par::Seq);
-            for (place, order) in orders.iter().enumerate() {
-                let row = &mut self.series[order * (modes + points) + first..];
-                let parts =
-                    sums.col_as_slice(2 * place).iter().zip(sums.col_as_slice(2 * place + 1));
-                row.iter_mut().zip(parts).for_each(|(sum, (re, im))| *sum += c64::new(*re, *im));
+        for (to, motion) in sums.iter_mut().zip([&values.displacement, &values.force]) {
+            let nodes = waves.transpose();
+            matmul(to.as_mut(), Accum::Add, motion.as_ref(), nodes, 1.0, Par::Seq);
+        }
+    }
+
+    /// Harmonics of what was summed up.
+    fn gather(&mut self) {
+        let [modes, points] = [0, 1].map(|part| self.sums[part].nrows());
+        self.series = vec![c64::new(0.0, 0.0); self.orders * (modes + points)];
+        for (place, order) in self.present.iter().enumerate() {
+            let (own, forces) = self.series[order * (modes + points)..].split_at_mut(modes);
+            for (row, sums) in [own, forces].into_iter().zip(&self.sums) {
+                let [re, im] = [0, 1].map(|part| sums.col_as_slice(2 * place + part));
+                let parts = row.iter_mut().zip(re.iter().zip(im));
+                parts.for_each(|(to, (re, im))| *to = c64::new(*re, *im));
             }
         }
     }
@@ -202,6 +217,7 @@ impl<'a> Survey<'a> {
 
     /// Completes half a period by its mirror image.
     pub(super) fn finish(&mut self) {
+        self.gather();
         if !self.half_wave {
             return;
         }
