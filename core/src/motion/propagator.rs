@@ -42,7 +42,7 @@ pub(crate) struct Propagators {
     known: Vec<Propagator>,
     numbers: usize,
     /// Stretches so far.
-    count: usize,
+    stretches: usize,
     /// The frequency whose motions have the units of displacements that all exponentials have \[rad/s\].
     pub(super) pace: f64,
     pub(super) quadrature: Quadrature,
@@ -62,7 +62,7 @@ impl Reach {
     pub(super) const CAUGHT_UP: Self = Self { short: 3.0, close: 1.0 };
     /// Where disturbances lag through a change of regime, at the price of a few vectors; the rounding of their
     /// power series grows with the exponential of the lag.
-    pub(super) const LAGGING: Self = Self { short: 6.0, close: 6.0 };
+    pub(super) const LAGGING: Self = Self { short: 8.0, close: 8.0 };
 }
 
 /// Equations of the disturbances in one state of the contacts, in coordinates `(s η, η')`.
@@ -253,6 +253,12 @@ impl Propagators {
         }
     }
 
+    /// Exponentials that are kept.
+    #[cfg(test)]
+    pub(super) fn count(&self) -> usize {
+        self.known.len()
+    }
+
     /// Takes states over a stretch at these rates, or nearly so, to within a length; the duration that is left.
     pub(super) fn advance(
         &mut self,
@@ -262,21 +268,21 @@ impl Propagators {
         states: Mat<f64>,
         inputs: &Mat<f64>,
     ) -> (Mat<f64>, f64) {
-        self.count += 1;
+        self.stretches += 1;
         let off = |own: &Propagator| (own.duration - duration).abs();
         let serves = |own: &&mut Propagator| {
             off(own) <= close && own.points == regime.points && own.strains == equations.strains
         };
         let closest = |a: &&mut Propagator, b: &&mut Propagator| off(a).total_cmp(&off(b));
         if let Some(own) = self.known.iter_mut().filter(serves).min_by(closest) {
-            own.served = self.count;
+            own.served = self.stretches;
             let states = own.exponential.applied(states.as_ref(), inputs.as_ref());
             return (states, duration - own.duration);
         }
         let exponential = equations.exponential(duration);
         let states = exponential.applied(states.as_ref(), inputs.as_ref());
         let (points, strains) = (regime.points.clone(), equations.strains.clone());
-        self.keep(Propagator { points, strains, duration, exponential, served: self.count });
+        self.keep(Propagator { points, strains, duration, exponential, served: self.stretches });
         (states, 0.0)
     }
 

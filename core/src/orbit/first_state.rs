@@ -5,7 +5,7 @@ use super::shooting::Shooting;
 use super::start::{later, start_of};
 use crate::balance::{ForcedBalance, HarmonicChoice, PointStatus, Settings};
 use crate::motion::State;
-use crate::solve::{norm, System as _};
+use crate::solve::{norm, NewtonSettings, System as _};
 
 /// Harmonics of the balance that a cold start comes from: at least, at most, and units of the fastest rate
 /// per period for each. Where passes along the orbit are long, more harmonics save some of them.
@@ -13,6 +13,12 @@ const START_HARMONICS: [usize; 2] = [9, 25];
 const PER_HARMONIC: f64 = 100.0;
 /// Closing error, relative to the motion, of a start that needs no better one.
 const NEAR: f64 = 1e-4;
+/// Share of a neighbour's error that a balance leaves where the next neighbour need not be asked, and its own
+/// error up to which that goes on.
+const FAR_BETTER: f64 = 1e-2;
+const WELL: f64 = 1e-3;
+/// Error of a balance, relative to the motion, beside which that of the harmonics it lacks counts.
+const BALANCED: f64 = 1e-8;
 
 impl PeriodicOrbits<'_> {
     /// A start, or that of harmonic balance if it is better: where but one motion is possible, and each
@@ -37,7 +43,11 @@ impl PeriodicOrbits<'_> {
         let other = shooting.unknowns(&self.harmonic_start(omega, 0.0));
         let balanced = misses(shooting, &other);
         if balanced < own {
-            self.beyond = balanced <= NEAR;
+            self.beyond = if self.beyond {
+                balanced <= WELL
+            } else {
+                balanced <= NEAR || balanced <= FAR_BETTER * own.min(1.0)
+            };
             other
         } else {
             y
@@ -57,6 +67,7 @@ impl PeriodicOrbits<'_> {
             harmonics: HarmonicChoice::Fixed(highest),
             max_harmonics: highest,
             residual: self.plan.settings.residual,
+            newton: NewtonSettings { tolerance: BALANCED, ..NewtonSettings::default() },
             ..Settings::default()
         };
         let Ok(mut balance) = ForcedBalance::new(self.plan.model, settings, &self.everywhere)
