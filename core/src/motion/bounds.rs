@@ -1,7 +1,8 @@
 //! What bounds the contact forces of a motion: slip limits, constant or under a normal force, and
 //! normal forces, which cannot pull.
 
-use super::modal_system::{dot, ContactState, ModalSystem};
+use super::contact_state::ContactState;
+use super::modal_system::{dot, ModalSystem};
 use crate::contact::{Bound, PointState, SlipPlane};
 use std::ops::Range;
 

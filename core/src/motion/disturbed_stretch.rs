@@ -1,6 +1,6 @@
 //! Disturbances of a motion over a stretch in which no contact changes its state.
 
-use super::modal_system::ContactState;
+use super::contact_state::ContactState;
 use super::propagator::{Equations, Propagators, Reach};
 use super::transition::Transition;
 use faer::linalg::matmul::matmul;

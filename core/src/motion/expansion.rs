@@ -5,9 +5,10 @@
 //! at the contacts are gone through but once for both.
 
 use super::branch_series::{BranchSeries, Pass};
+use super::contact_state::ContactState;
 use super::damping::Damping;
 use super::microslip::Microslip;
-use super::modal_system::{dot, ContactState, ModalSystem};
+use super::modal_system::{dot, ModalSystem};
 use super::polynomial::DEGREE;
 use super::power_series::{sum_of_products, PowerSeries, LONGEST_MICROSLIP};
 use super::sliding::{Slide, Swing};

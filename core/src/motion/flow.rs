@@ -6,13 +6,15 @@
 //! slips. A traction in a plane reaches its limit by its length, and slides until its slip velocity
 //! vanishes. All of these are zeros of polynomials, located to rounding.
 
+use super::contact_state::ContactState;
 use super::flow_event::{Event, FlowEvent, FlowSegment, Halt};
 use super::microslip::Turn;
-use super::modal_system::{dot, ContactState, ModalSystem};
+use super::modal_system::{dot, ModalSystem};
 use super::polynomial::{reach_of, DEGREE};
 use super::power_series::PowerSeries;
 use super::state::State;
 use crate::contact::{Bound, PointState};
+use std::sync::Arc;
 
 /// Steps between two questions whether to end.
 const LOOK: usize = 32;
@@ -108,7 +110,7 @@ impl<'a> Flow<'a> {
         until: f64,
         observe: &mut dyn FnMut(FlowEvent<'_>),
     ) -> Result<(), Halt> {
-        let mut regime = ContactState::new(self.system, &state.points);
+        let mut regime = Arc::new(ContactState::new(self.system, &state.points));
         let (mut changes, most) = (0, CHANGES * self.system.points());
         while state.time < until {
             if !state.is_bounded() {
@@ -164,7 +166,7 @@ impl<'a> Flow<'a> {
             if turn.is_none() {
                 self.change(state, &speed, point, to);
             }
-            let after = ContactState::new(self.system, &state.points);
+            let after = Arc::new(regime.changed(self.system, &state.points));
             // Friction comes and goes with the normal force.
             let mut before = &regime;
             for point in self.changed_with(point) {

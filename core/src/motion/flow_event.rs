@@ -1,9 +1,10 @@
 //! What an observer of the exact flow sees: stretches of the motion, and the events between them.
 
+use super::contact_state::ContactState;
 use super::microslip::Turn;
-use super::modal_system::ContactState;
 use super::power_series::PowerSeries;
 use crate::contact::PointState;
+use std::sync::Arc;
 
 /// A contact point changes from stick to slip or back, opens or closes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,7 +27,7 @@ pub struct FlowSegment<'a> {
     /// Length in τ of the series.
     pub length: f64,
     /// States of the contact points.
-    pub regime: &'a ContactState,
+    pub regime: &'a Arc<ContactState>,
 }
 
 impl FlowSegment<'_> {
@@ -49,9 +50,9 @@ pub enum FlowEvent<'a> {
         /// Relative velocities at the contacts [m/s].
         speed: &'a [f64],
         /// Before the event.
-        before: &'a ContactState,
+        before: &'a Arc<ContactState>,
         /// After it.
-        after: &'a ContactState,
+        after: &'a Arc<ContactState>,
         /// Of a contact without sliders, by its number, what the event does to its reversals.
         turn: Option<(usize, Turn)>,
     },

@@ -1,7 +1,7 @@
 //! What a contact point does next along a step of the flow.
 
+use super::contact_state::ContactState;
 use super::flow::{Flow, Next};
-use super::modal_system::ContactState;
 use super::polynomial::{first_zero, reach_of, DEGREE};
 use super::power_series::sum_of_products;
 use super::sliding::Slide;

@@ -10,9 +10,9 @@
 //! vectors say what a whole step would say of all columns. So short stretches take no step of their own, and
 //! steps of another motion nearby serve where their ends are a little off.
 
+use super::contact_state::ContactState;
 use super::damping::Damping;
 use super::linear_phase::LinearPhase;
-use super::modal_system::ContactState;
 use super::propagator::Propagators;
 use super::transition::Transition;
 use crate::solve::dot;
@@ -393,7 +393,6 @@ mod tests {
                 };
                 assert_eq!(zeros(&found), zeros(&by_steps));
                 let fresh = known.count() - before;
-                println!("{coupled} {omega} {shift} {} {fresh}", phases.len());
                 assert!(fresh < if before == 0 { phases.len() } else { phases.len() / 4 });
             }
         }

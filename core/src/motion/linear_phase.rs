@@ -1,16 +1,18 @@
 //! Stretches of a motion in which the equations are linear, and what the events at their ends do to its
 //! derivative.
 
+use super::contact_state::ContactState;
 use super::flow_event::{Event, FlowEvent};
 use super::microslip::Turn;
-use super::modal_system::{ContactState, ModalSystem};
+use super::modal_system::ModalSystem;
 use super::power_series::PowerSeries;
 use crate::contact::PointState;
+use std::sync::Arc;
 
 /// A stretch of the motion in one regime, and what ends it.
 #[derive(Debug, Clone)]
 pub(crate) struct LinearPhase {
-    pub(super) regime: ContactState,
+    pub(super) regime: Arc<ContactState>,
     /// Duration \[s\].
     pub(super) duration: f64,
     pub(super) onset: Option<Onset>,
@@ -50,7 +52,7 @@ impl LinearPhase {
                     phase.duration += segment.duration();
                 }
                 _ => phases.push(Self {
-                    regime: segment.regime.clone(),
+                    regime: Arc::clone(segment.regime),
                     duration: segment.duration(),
                     onset: None,
                     slide: segment
@@ -63,7 +65,7 @@ impl LinearPhase {
             FlowEvent::Event { before, turn: Some(turn), .. } => match phases.last_mut() {
                 Some(phase) => phase.turns.push(*turn),
                 None => phases.push(Self {
-                    regime: (*before).clone(),
+                    regime: Arc::clone(before),
                     duration: 0.0,
                     onset: None,
                     slide: None,
@@ -107,7 +109,7 @@ impl LinearPhase {
                         phase.onset = onset;
                     }
                     _ => {
-                        let regime = (*before).clone();
+                        let regime = Arc::clone(before);
                         let (slide, turns) = (None, Vec::new());
                         phases.push(Self { regime, duration: 0.0, onset, slide, turns });
                     }

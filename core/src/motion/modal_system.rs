@@ -5,7 +5,7 @@ use super::damping::Damping;
 use super::microslip::Microslip;
 use super::pace::{dof_rates, rate_of};
 use super::projection::Projection;
-use crate::contact::{Bound, PointState, PointSummary, SlipPlane};
+use crate::contact::{Bound, PointSummary, SlipPlane};
 use crate::model::Model;
 use crate::structure::{modes, ModalDamping, RealModes};
 use crate::Error;
@@ -344,38 +344,6 @@ impl ModalSystem {
     /// Number of strains of all contacts: forces that deformations cannot give do not count.
     pub(crate) fn strains(&self) -> usize {
         self.bodies.last().map_or(0, |body| body.strains.end)
-    }
-}
-
-/// `∂f/∂u` and slip per displacement of all contacts in given states.
-#[derive(Debug, Clone)]
-pub struct ContactState {
-    /// State of each point of an element.
-    pub points: Vec<PointState>,
-    /// `∂f/∂u`, points × points [N/m].
-    pub tangent: Mat<f64>,
-    /// `∂s'/∂u'`, points × points.
-    pub slip_rate: Mat<f64>,
-}
-
-impl ContactState {
-    pub(crate) fn new(system: &ModalSystem, points: &[PointState]) -> Self {
-        let total = points.len();
-        let mut regime = Self {
-            points: points.to_vec(),
-            tangent: Mat::zeros(total, total),
-            slip_rate: Mat::zeros(total, total),
-        };
-        for body in system.bodies() {
-            let (start, size) = (body.points.start, body.points.len());
-            let own = &points[body.points.clone()];
-            let block = |matrix: &mut Mat<f64>, own: Mat<f64>| {
-                matrix.get_mut(start..start + size, start..start + size).copy_from(own);
-            };
-            block(&mut regime.tangent, body.law.tangent(own));
-            block(&mut regime.slip_rate, body.law.slip_rate(own));
-        }
-        regime
     }
 }
 

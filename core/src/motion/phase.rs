@@ -4,7 +4,8 @@
 //! force within the slip limits keeps an unstable mode of the slipping structure from growing. And
 //! a motion that the stuck structure damps, below the onset of slip, stays below it.
 
-use super::modal_system::{dot, ContactState, ModalSystem};
+use super::contact_state::ContactState;
+use super::modal_system::{dot, ModalSystem};
 use super::state::State;
 use crate::contact::PointState;
 use crate::solve::hermitian_eigen;

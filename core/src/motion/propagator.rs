@@ -3,9 +3,9 @@
 //! Strains follow the displacements, `g = r + R η` with a constant r, so that they need no equations of their
 //! own: `η'' + C η' + (Ω² + G R) η = −G r`.
 
+use super::contact_state::ContactState;
 use super::damping::Damping;
 use super::exponential::{exponential, Driven};
-use super::modal_system::ContactState;
 use super::oscillator::Oscillator;
 use super::quadrature::Quadrature;
 use crate::contact::PointState;

@@ -18,7 +18,8 @@
 //! the one that is bounded, which the others come to at once. Where the contact is about to open the
 //! traction is too small for its direction to matter.
 
-use super::modal_system::{ContactState, ModalSystem};
+use super::contact_state::ContactState;
+use super::modal_system::ModalSystem;
 use super::polynomial::{DEGREE, TRUNCATION};
 use super::state::State;
 use crate::contact::{Bound, PointState, SlipPlane};

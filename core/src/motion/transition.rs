@@ -11,9 +11,10 @@
 //! the motion itself. At the onset the traction loses what is along it but the change of its limit.
 
 use super::bodies::Body;
+use super::contact_state::ContactState;
 use super::linear_phase::{LinearPhase, Onset};
 use super::loop_disturbance::LoopDisturbance;
-use super::modal_system::{ContactState, ModalSystem};
+use super::modal_system::ModalSystem;
 use super::power_series::PowerSeries;
 use super::propagator::{Propagators, Reach};
 use super::state::State;

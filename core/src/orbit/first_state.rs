@@ -17,8 +17,9 @@ const NEAR: f64 = 1e-4;
 /// error up to which that goes on.
 const FAR_BETTER: f64 = 1e-2;
 const WELL: f64 = 1e-3;
-/// Error of a balance, relative to the motion, beside which that of the harmonics it lacks counts.
-const BALANCED: f64 = 1e-8;
+/// Of a balance where one motion alone is possible: the harmonics it lacks count for more than its error. Elsewhere
+/// sliders keep where it leaves them.
+const BALANCED: NewtonSettings = NewtonSettings { tolerance: 1e-8, max_iterations: 100 };
 
 impl PeriodicOrbits<'_> {
     /// A start, or that of harmonic balance if it is better: where but one motion is possible, and each
@@ -67,7 +68,7 @@ impl PeriodicOrbits<'_> {
             harmonics: HarmonicChoice::Fixed(highest),
             max_harmonics: highest,
             residual: self.plan.settings.residual,
-            newton: NewtonSettings { tolerance: BALANCED, ..NewtonSettings::default() },
+            newton: if self.plan.unique { BALANCED } else { NewtonSettings::default() },
             ..Settings::default()
         };
         let Ok(mut balance) = ForcedBalance::new(self.plan.model, settings, &self.everywhere)

@@ -2,6 +2,7 @@
 //! harmonic is discarded, so that they judge the harmonic balance.
 
 mod closed;
+mod closing;
 mod curve_stability;
 mod cycle;
 mod drift;

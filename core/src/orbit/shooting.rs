@@ -1,18 +1,14 @@
 //! Shooting: the start state that the flow brings back after a period, or to its mirror image
 //! after half a period.
 
+use super::closing::Closing;
 use super::loop_memory::LoopMemory;
 use super::price::matrix_price;
 use super::rotation::Rotation;
 use crate::contact::{PointState, Residual};
 use crate::motion::{Flow, FlowEvent, LinearPhase, ModalSystem, Propagators, State, Transition};
 use crate::solve::System;
-use faer::linalg::solvers::Solve as _;
 use faer::Mat;
-
-/// Least pivot, relative to the transition matrix, of a closing condition that determines the
-/// orbit: at a resonance that nothing bounds it does not.
-const SINGULAR: f64 = 1e-13;
 
 /// Steps of the flow that an orbit is granted: some thousand periods of a motion of a hundred modes, or
 /// minutes of one of many more. What needs more has hardly any mass somewhere, or no orbit.
@@ -50,6 +46,7 @@ pub(super) struct Shooting<'a> {
     pub(super) end: Option<State>,
     /// Derivative of the image, and whether it is that of an evaluation before the last one.
     derivative: Option<Mat<f64>>,
+    closing: Option<Closing>,
     earlier: bool,
     /// Unknowns, image and points that have slipped of the last evaluation.
     last: Option<(Vec<f64>, Vec<f64>, Vec<bool>)>,
@@ -105,6 +102,7 @@ impl<'a> Shooting<'a> {
             memory: LoopMemory::new(system, half_wave),
             end: None,
             derivative: None,
+            closing: None,
             earlier: false,
             last: None,
             matrices: 0,
@@ -211,7 +209,7 @@ impl<'a> Shooting<'a> {
         if let Some((_, image, slipped)) = known {
             self.slipped.clone_from(slipped);
             if std::mem::take(&mut self.earlier) {
-                self.derivative = None;
+                (self.derivative, self.closing) = (None, None);
             }
             return Some(image.clone());
         }
@@ -221,7 +219,8 @@ impl<'a> Shooting<'a> {
         self.held = held;
         self.begun.clone_from(&state.force);
         self.phases.clear();
-        (self.derivative, self.earlier, self.last) = (None, false, None);
+        (self.derivative, self.closing) = (None, None);
+        (self.earlier, self.last) = (false, None);
         let (phases, memory) = (&mut self.phases, &mut self.memory);
         state.time = self.begin;
         let before = self.flow.steps;
@@ -349,8 +348,10 @@ impl System for Shooting<'_> {
 
     fn value(&mut self, x: &[f64], out: &mut [f64]) {
         let (derivative, slipped) = (self.derivative(), std::mem::take(&mut self.slipped));
+        let closing = self.closing.take();
         self.residual(x, out);
         (self.derivative, self.slipped, self.earlier) = (Some(derivative), slipped, true);
+        self.closing = closing;
     }
 
     fn price(&self) -> f64 {
@@ -369,31 +370,15 @@ impl System for Shooting<'_> {
     }
 
     fn solve(&mut self, rhs: &[f64], step: &mut [f64]) -> bool {
-        let mut matrix = self.derivative();
-        let conserved = self.conserved(&matrix, &self.slipped);
-        let size = matrix.nrows();
-        let scale = 1.0 + matrix.norm_max();
-        for i in 0..size {
-            matrix[(i, i)] -= 1.0;
-        }
-        let mut right = Mat::from_fn(size, 1, |i, _| rhs[i]);
-        if !self.half_wave {
+        if self.closing.is_none() {
+            let matrix = self.derivative();
             // The slip of a contact that never slips is free: it stays as it is.
-            for (target, row) in conserved {
-                for (j, value) in row.iter().enumerate() {
-                    matrix[(target, j)] = *value;
-                }
-                right[(target, 0)] = 0.0;
-            }
+            let conserved = match self.half_wave {
+                true => Vec::new(),
+                false => self.conserved(&matrix, &self.slipped),
+            };
+            self.closing = Closing::new(matrix, &conserved);
         }
-        let lu = matrix.partial_piv_lu();
-        if (0..size).any(|i| lu.U()[(i, i)].abs() <= SINGULAR * scale) {
-            return false;
-        }
-        lu.solve_in_place(&mut right);
-        for (i, step) in step.iter_mut().enumerate() {
-            *step = right[(i, 0)];
-        }
-        step.iter().all(|s| s.is_finite())
+        self.closing.as_ref().is_some_and(|closing| closing.step(rhs, step))
     }
 }
