@@ -171,15 +171,10 @@ impl Problem {
         Ok(PyArray1::from_vec(py, found))
     }
 
-    /// The lowest frequency of a range at which nothing bounds one of some DOFs, if there is one [rad/s].
-    fn unbounded(
-        &self,
-        py: Python<'_>,
-        dofs: Vec<usize>,
-        span: (f64, f64),
-    ) -> PyResult<Option<f64>> {
+    /// The lowest frequency of a range at which nothing bounds each DOF, where there is one [rad/s].
+    fn unbounded(&self, py: Python<'_>, span: (f64, f64)) -> PyResult<Vec<Option<f64>>> {
         let model = Arc::clone(&self.model);
-        whole(py, move |_| model.unbounded(span, &dofs))
+        whole(py, move |look| model.unbounded(span, look))
     }
 
     /// Names of the contact laws that are no monotone operators of the motion.

@@ -120,7 +120,7 @@ impl Search<'_> {
     fn peak(&self) -> Result<CellPeak, Error> {
         let (model, _, dof) = self.cell;
         let span = (self.grid[0], self.grid[self.grid.len() - 1]);
-        if model.unbounded(span, &[*dof])?.is_some() {
+        if model.unbounded(span, self.progress)?[*dof].is_some() {
             return Ok(CellPeak::missing(0, PointStatus::Singular));
         }
         let found = if model.is_monotone() { self.climbed(span) } else { self.located() };

@@ -4,6 +4,7 @@ use super::body::Body;
 use crate::contact::ContactLaw;
 use crate::structure::Poles;
 use crate::Error;
+use faer::{c64, Mat};
 use std::sync::OnceLock;
 
 /// States of the contacts, at most: all of a few points; of more the stuck and the slipping one, and
@@ -18,7 +19,9 @@ const MOST_DOFS: usize = 400;
 #[derive(Debug)]
 pub(super) struct State {
     pub(super) poles: Poles,
-    /// Effect of a unit force at every contact point on every pole, none of points that stick, and
+    /// Effect of a unit force at every contact point on every pole, poles by points, none where it is rounding.
+    pub(super) effects: Mat<c64>,
+    /// Size of that effect, none of points that stick, and
     /// what the point shows of it.
     pub(super) contacts: Vec<Vec<[f64; 2]>>,
     /// What of a slip limit a traction in each plane does to every pole, over what a force along a line does.

@@ -8,6 +8,7 @@ mod modal_basis;
 mod resonances;
 mod slipping;
 mod traction;
+mod unbalanced;
 mod unbounded;
 mod variation;
 

@@ -29,8 +29,9 @@ pub struct Resonance {
     /// Displacement of every DOF that the load, helped by all slipping contacts, can cause; infinite
     /// where that is not known.
     pub reach: Option<Vec<f64>>,
-    /// Whether the load is stronger than friction at all points that can slip, and nothing damps.
-    pub unbounded: bool,
+    /// DOFs that nothing bounds there: nothing damps, and the load is stronger than friction at all points that
+    /// can slip.
+    pub unbounded: Vec<usize>,
     /// Whether the load itself excites that harmonic.
     pub forced: bool,
     /// Whether points slip in a part of the period there: where it lies is a guess.
@@ -56,10 +57,6 @@ impl Model {
     ) -> Result<Vec<Resonance>, Error> {
         let forced = self.compliance.forced_harmonics();
         let lowest = forced.iter().copied().find(|&k| k > 0).unwrap_or(1);
-        let limits: Vec<f64> = self.slip_limits().collect();
-        let planes: Vec<[usize; 2]> = self.planes().collect();
-        let stiffness = self.contact_stiffness();
-        let stiffness: Vec<f64> = (0..limits.len()).map(|i| stiffness[(i, i)]).collect();
         let inside = |omega: f64| (low..=high).contains(&omega);
         let mut found = Vec::new();
         for harmonic in harmonics.filter(|&k| k > 0) {
@@ -77,24 +74,23 @@ impl Model {
                     omega,
                     bandwidth,
                     reach: None,
-                    unbounded: false,
+                    unbounded: Vec::new(),
                     forced: is_forced,
                     partial: false,
                 }));
                 continue;
             };
-            let load = self.load(harmonic);
             // A slipping contact bears a square wave at most.
-            let share = square_wave(lowest, harmonic);
-            let (limits, stiffness, planes) = (&limits, &stiffness, &planes);
-            let bearing = Bearing { load: &load, limits, stiffness, planes, share };
+            let bearing = Bearing::of(self, harmonic, square_wave(lowest, harmonic));
             // A load of its own moves a resonance as `shift` says.
             for state in states.iter().filter(|state| state.carried == 0.0 || !is_forced) {
+                let grown = if state.all { self.unbounded_by(&bearing, state) } else { Vec::new() };
                 for (j, pole) in state.poles.values.iter().enumerate() {
                     let driven = bearing.driven(state, j);
                     let decay = pole.re.abs() + bearing.lost(state, j, order);
                     let reach = bearing.reach_beyond(states, state, j, decay);
-                    let unbounded = state.all && self.nothing_bounds(&bearing, state, j, decay);
+                    let unbounded = grown.iter().find(|one| one.poles.contains(&j));
+                    let unbounded = unbounded.map_or_else(Vec::new, |one| one.dofs.clone());
                     let moved = shift(driven, decay, &|| bearing.points(state, j));
                     for omega in [Some(pole.im), moved.map(|by| pole.im + by)] {
                         let Some(omega) = omega.map(|w| w / order).filter(|&w| inside(w)) else {
@@ -104,7 +100,7 @@ impl Model {
                             omega,
                             bandwidth: 2.0 * decay / order,
                             reach: Some(reach.clone()),
-                            unbounded,
+                            unbounded: unbounded.clone(),
                             forced: is_forced,
                             partial: state.carried > 0.0,
                         });
@@ -192,16 +188,20 @@ impl Model {
             let rows = Mat::from_fn(all.nrows(), all.ncols(), |i, j| c64::new(all[(i, j)], 0.0));
             (Poles::real(matrices)?, rows)
         };
-        let (effects, shown) = (&poles.left * rows.adjoint(), &rows * &poles.right);
-        let effect = |j: usize, i: usize| {
+        let (all_effects, shown) = (&poles.left * rows.adjoint(), &rows * &poles.right);
+        let effects = Mat::from_fn(poles.values.len(), rows.nrows(), |j, i| {
             let noise = NOISE * poles.left.row(j).norm_l2() * rows.row(i).norm_l2();
-            let size = effects[(j, i)].norm();
-            let counts = size > noise;
-            match (counts, slips[i]) {
-                (true, true) => [size, shown[(i, j)].norm()],
-                (true, false) => [0.0, shown[(i, j)].norm()],
-                (false, _) => [0.0, 0.0],
+            let one = all_effects[(j, i)];
+            if one.norm() > noise {
+                one
+            } else {
+                c64::new(0.0, 0.0)
             }
+        });
+        let effect = |j: usize, i: usize| match (effects[(j, i)].norm(), slips[i]) {
+            (0.0, _) => [0.0, 0.0],
+            (size, true) => [size, shown[(i, j)].norm()],
+            (_, false) => [0.0, shown[(i, j)].norm()],
         };
         let contacts = (0..poles.values.len())
             .map(|j| (0..rows.nrows()).map(|i| effect(j, i)).collect())
@@ -209,7 +209,7 @@ impl Model {
         let planes: Vec<[usize; 2]> = self.planes().collect();
         let of_plane = |j: usize, [a, b]: [usize; 2]| {
             if slips[a] {
-                most_of_a_traction([effects[(j, a)], effects[(j, b)]])
+                most_of_a_traction([all_effects[(j, a)], all_effects[(j, b)]])
             } else {
                 0.0
             }
@@ -219,7 +219,15 @@ impl Model {
             .collect();
         let mut limits = self.slip_limits().zip(slips);
         let all = carried == 0.0 && limits.all(|(limit, slips)| *slips || limit.is_infinite());
-        Ok(State { poles, contacts, planes: in_planes, slips: slips.to_vec(), carried, all })
+        Ok(State {
+            poles,
+            effects,
+            contacts,
+            planes: in_planes,
+            slips: slips.to_vec(),
+            carried,
+            all,
+        })
     }
 }
 
@@ -241,25 +249,34 @@ pub(super) fn square_wave(lowest: usize, harmonic: usize) -> f64 {
 }
 
 /// What drives and what slows a resonance at one harmonic.
-pub(super) struct Bearing<'a> {
-    pub(super) load: &'a [c64],
-    pub(super) limits: &'a [f64],
-    pub(super) stiffness: &'a [f64],
+pub(super) struct Bearing {
+    pub(super) load: Vec<c64>,
+    pub(super) limits: Vec<f64>,
+    pub(super) stiffness: Vec<f64>,
     /// Pairs of points that slip in a plane.
-    pub(super) planes: &'a [[usize; 2]],
+    pub(super) planes: Vec<[usize; 2]>,
     /// Most of a slip limit that a friction force has in this harmonic.
     pub(super) share: f64,
 }
 
-impl Bearing<'_> {
+impl Bearing {
+    /// Of the load of a harmonic, and all contacts.
+    pub(super) fn of(model: &Model, harmonic: usize, share: f64) -> Self {
+        let limits: Vec<f64> = model.slip_limits().collect();
+        let stiffness = model.contact_stiffness();
+        let stiffness = (0..limits.len()).map(|i| stiffness[(i, i)]).collect();
+        let planes = model.planes().collect();
+        Self { load: model.load(harmonic), limits, stiffness, planes, share }
+    }
+
     /// Effect of the load on a pole.
     pub(super) fn driven(&self, state: &State, j: usize) -> f64 {
-        driven(state, j, self.load)
+        driven(state, j, &self.load)
     }
 
     /// Most that the friction of all slipping points does to a pole.
     pub(super) fn friction(&self, state: &State, j: usize) -> f64 {
-        let points = state.contacts[j].iter().zip(self.limits).enumerate();
+        let points = state.contacts[j].iter().zip(&self.limits).enumerate();
         let lines = points.filter(|(i, ([effect, _], _))| {
             *effect > 0.0 && !self.planes.iter().any(|plane| plane.contains(i))
         });
@@ -286,7 +303,7 @@ impl Bearing<'_> {
         state: &'s State,
         j: usize,
     ) -> impl Iterator<Item = SlippingPoint> + 's {
-        let points = state.contacts[j].iter().zip(self.limits).zip(self.stiffness);
+        let points = state.contacts[j].iter().zip(&self.limits).zip(&self.stiffness);
         points.map(|((&[effect, seen], &limit), &stiffness)| SlippingPoint {
             effect,
             seen,

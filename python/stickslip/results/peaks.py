@@ -70,6 +70,12 @@ class Peaks(Sweep):
     def _peaks(self) -> dict[tuple[str, Measure], Peak]:
         return {}
 
+    @cached_property
+    def _unbounded(self) -> list[float | None]:
+        """Frequencies in the range of the points at which nothing bounds the degrees of freedom."""
+        span = (float(self.omega.min()), float(self.omega.max()))
+        return self.model.problem.unbounded(span)
+
     def peak(self, dof: str, measure: Measure = "half_range") -> Peak:
         """Return the highest point of the response curve, between the computed points.
 
@@ -143,10 +149,8 @@ def highest(result: Peaks, dof: str, measure: Measure, refine: Refine) -> Peak:
 
 def _of_branch(result: Peaks, dof: str, measure: Measure) -> Peak:
     """Return the highest point of a branch, unless nothing bounds the response on any."""
-    low, high = float(result.omega.min()), float(result.omega.max())
-    place = result.model.structure.index(dof)
-    omega = result.model.problem.unbounded([place], (low, high))
-    return along(result, dof, measure) if omega is None else _unbounded(dof, omega)
+    omega = result._unbounded[result.model.structure.index(dof)]
+    return along(result, dof, measure) if omega is None else _without_bound(dof, omega)
 
 
 def along(result: Peaks, dof: str, measure: Measure) -> Peak:
@@ -235,7 +239,7 @@ def _summit(
     if row is not None:
         found, status = row[:2], Status.from_code(row[3])
         if status == Status.SINGULAR and np.isfinite(found[0]):
-            return index, _unbounded(dofs[index], found[0])
+            return index, _without_bound(dofs[index], found[0])
         beside_gap = beside_gap or not status.solved
         if found[1] > peak[1] * (1.0 + SAME):
             index, peak = row[2], found
@@ -263,7 +267,7 @@ def _told(
     return Peak(*peak, at_edge, beside_gap)
 
 
-def _unbounded(dof: str, omega: float) -> Peak:
+def _without_bound(dof: str, omega: float) -> Peak:
     """Return the peak of a resonance that nothing bounds, and warn of it."""
     warnings.warn(
         f"peak of {dof!r}: neither damping nor friction bounds the resonance at {omega:.6g} rad/s; "

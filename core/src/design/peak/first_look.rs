@@ -94,7 +94,10 @@ impl FirstLook {
         let unbounded = aim
             .groups
             .iter()
-            .map(|group| resonances.iter().find(|one| one.unbounded && reach(one, group) > 0.0))
+            .map(|group| {
+                let grows = |one: &&Resonance| group.iter().any(|dof| one.unbounded.contains(dof));
+                resonances.iter().find(grows)
+            })
             .map(|one| one.map(|one| one.omega))
             .collect();
         let narrowest = resonances.iter().filter(|one| one.forced).map(|one| one.bandwidth);
