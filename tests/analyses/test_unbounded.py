@@ -142,3 +142,145 @@ def test_friction_opposes_a_motion_by_square_waves_of_its_own_harmonic(force, bo
     assert np.isfinite(height) == bounded
     if bounded:
         assert height >= curve.amplitude("a").max()
+
+
+def blades(count, contacts, forces, damping=None):
+    """Equal oscillators of 100 rad/s with nothing but contacts between them."""
+    structure = ss.Structure(
+        np.eye(count),
+        1e4 * np.eye(count),
+        damping=damping,
+        dofs=[f"q{blade}" for blade in range(count)],
+    )
+    return ss.Model(structure, contacts, forces)
+
+
+def between(count, limit, law=ss.Jenkins):
+    pairs = [(blade, (blade + 1) % count) for blade in range(count if count > 2 else 1)]
+    return [law(f"q{a}", f"q{b}", stiffness=STUCK, slip_force=limit) for a, b in pairs]
+
+
+def unbounded(model):
+    """Which degrees of freedom nothing bounds at the common frequency."""
+    grid = np.linspace(*SPAN, 40)
+    response = ss.forced_response(model, grid, 3, stability=False)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        peaks = [response.peak(dof) for dof in model.structure.dofs]
+    assert all(peak.omega == pytest.approx(100.0) for peak in peaks if np.isinf(peak.amplitude))
+    return [bool(np.isinf(peak.amplitude)) for peak in peaks]
+
+
+@pytest.mark.parametrize("law", [ss.Jenkins, ss.BoucWen])
+def test_a_common_motion_of_equal_blades_is_seen_by_no_contact_between_them(law):
+    """Friction above the load bounds each blade against the other, not both together."""
+    model = blades(2, between(2, 50.0, law), [ss.Force("q0", 1.0)])
+    assert unbounded(model) == [True, True]
+    against = [ss.Force("q0", 1.0), ss.Force("q1", 1.0, phase=np.pi)]
+    assert unbounded(blades(2, between(2, 50.0, law), against)) == [False, False]
+
+
+@pytest.mark.parametrize("count", [3, 6, 13])
+def test_a_wave_over_equal_blades_is_bounded_by_what_contacts_see_of_it(count):
+    """Between neighbours it moves by 2 sin(pi/n) of its amplitude: 4/pi of the limit at each end."""
+    enough = np.pi / 4.0 / (2.0 * np.sin(np.pi / count))
+    wave = [ss.Force(f"q{i}", 1.0, phase=2.0 * np.pi * i / count) for i in range(count)]
+    for share, expected in ((0.999, True), (1.001, False)):
+        model = blades(count, between(count, share * enough), wave)
+        found = model.problem.unbounded(SPAN)
+        assert [one is not None for one in found] == [expected] * count
+    # The problem of a grid search and that of a branch judge alike.
+    assert unbounded(blades(count, between(count, 0.9 * enough), wave)) == [True] * count
+
+
+def test_of_equal_blades_only_those_grow_that_friction_lets_go():
+    """The first pair is held to the ground, the second is not."""
+    contacts = [
+        ss.Jenkins("q0", stiffness=STUCK, slip_force=2.0),
+        ss.Jenkins("q0", "q1", stiffness=STUCK, slip_force=5.0),
+        ss.Jenkins("q2", "q3", stiffness=STUCK, slip_force=5.0),
+    ]
+    forces = [ss.Force("q1", 1.0), ss.Force("q2", 1.0)]
+    assert unbounded(blades(4, contacts, forces)) == [False, False, True, True]
+
+
+def test_a_traction_in_a_plane_between_equal_oscillators():
+    """In phase with a load that turns a traction does pi/2 of what a force along a line does."""
+    plane = BOUNDED["coulomb in a plane"]
+    for limit, expected in ((0.99, True), (1.01, False)):
+        structure = ss.Structure(np.eye(2), 1e4 * np.eye(2), dofs=["a", "b"])
+        forces = [ss.Force("a", 1.0), ss.Force("b", 1.0, phase=0.5 * np.pi)]
+        model = ss.Model(structure, [plane(limit)], forces)
+        found = model.problem.unbounded(SPAN)
+        assert [one is not None for one in found] == [expected] * 2
+
+
+def test_what_a_growing_force_does_not_see_of_equal_blades_is_unbounded():
+    """A cubic spring holds the first blade to the ground, and leaves the sum of the others alone."""
+    contacts = [*between(2, 5.0), ss.Cubic("q0", stiffness=1e6)]
+    model = blades(3, contacts, [ss.Force("q1", 1.0), ss.Force("q2", 1.0)])
+    found = model.problem.unbounded(SPAN)
+    assert [one is not None for one in found] == [False, False, True]
+
+
+def test_equal_frequencies_far_apart_in_a_structure():
+    """Two sub-structures of one frequency beside a stiff one: rounding parts them."""
+    stiffness = np.diag([1e4, 1e4, 1e10])
+    turn = np.linalg.qr(np.random.default_rng(3).normal(size=(3, 3)))[0]
+    structure = ss.Structure(np.eye(3), turn @ stiffness @ turn.T, dofs=["a", "b", "c"])
+    first, second = turn[:, 0], turn[:, 1]
+    forces = [ss.Force(dof, float(p)) for dof, p in zip("abc", first, strict=True)]
+    contact = [ss.Jenkins("a", "b", stiffness=STUCK, slip_force=50.0)]
+    # Some motion of the pair leaves the distance of a and b as it is, and is driven.
+    seen = np.array([first[0] - first[1], second[0] - second[1]])
+    assert abs(seen[1]) > 0.1 * np.linalg.norm(seen)
+    found = ss.Model(structure, contact, forces).problem.unbounded(SPAN)
+    assert all(one is not None for one in found)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_what_is_unbounded_grows_as_damping_vanishes(seed):
+    """Beside the verdict the balance itself, with a hundred thousandth and a millionth."""
+    rng = np.random.default_rng(seed)
+    count = int(rng.integers(2, 6))
+    contacts = []
+    for _ in range(int(rng.integers(1, count + 1))):
+        a, b = (f"q{i}" for i in rng.choice(count, 2, replace=False))
+        ends = (a, b) if rng.random() < 0.7 else (a,)
+        limit = float(10.0 ** rng.uniform(-1.0, 1.0))
+        contacts.append(ss.Jenkins(*ends, stiffness=STUCK, slip_force=limit))
+    forces = [
+        ss.Force(f"q{i}", float(10.0 ** rng.uniform(-1.0, 1.0)), phase=float(rng.uniform(0.0, 6.0)))
+        for i in rng.choice(count, int(rng.integers(1, 3)), replace=False)
+    ]
+    found = blades(count, contacts, forces).problem.unbounded(SPAN)
+    heights = []
+    for ratio in (1e-5, 1e-6):
+        damped = blades(count, contacts, forces, ss.ModalDamping(ratio))
+        solution = ss.forced_response(damped, [100.0], 3)
+        assert solution.converged[0]
+        heights.append([solution.amplitude(f"q{i}", "fundamental")[0] for i in range(count)])
+    # Friction that takes nearly all of a load leaves a height that grows late.
+    grows = np.array(heights[1]) / np.maximum(heights[0], 1e-6 * np.max(heights))
+    for one, growth in zip(found, grows, strict=True):
+        assert growth < 9.0 if one is None else growth > 1.2
+
+
+def test_a_summary_asks_once_for_all(monkeypatch):
+    """The poles of a model are those of all its degrees of freedom."""
+    contacts = between(6, 0.5, ss.BoucWen)
+    response = ss.forced_response(blades(6, contacts, [ss.Force("q0", 1.0)]), [90.0, 95.0], 3)
+    asked = []
+
+    class Problem:
+        def __init__(self, problem):
+            self.problem = problem
+
+        def __getattr__(self, name):
+            asked.append(name)
+            return getattr(self.problem, name)
+
+    monkeypatch.setitem(response.model.__dict__, "problem", Problem(response.model.problem))
+    assert len(response.summary()) == 6
+    response.peak("q1", "max")
+    assert asked.count("unbounded") == 1

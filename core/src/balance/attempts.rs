@@ -98,6 +98,9 @@ impl ForcedBalance<'_> {
             |unknowns| unknowns.recast(harmonics),
         );
         let mut report = self.iterate(equations, &mut x);
+        if has_failed(&report) && self.has_no_bound(omega) {
+            return Ok(Point::empty(omega, PointStatus::Singular, self.observe.len(), contacts));
+        }
         let patient = self.is_worth_a_homotopy(harmonics.highest());
         if has_failed(&report) && start.is_some() && patient {
             // A neighbour in another state of the contacts may mislead.

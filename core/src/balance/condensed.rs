@@ -1,6 +1,7 @@
 //! The condensed equations at one frequency: `R(U) = U − μ U^stuck − G Q(U)`.
 
 use super::evaluation::Evaluated;
+use super::formed::ByProducts;
 use super::linear::{Factor, Linear};
 use super::modal_work::is_large;
 use super::solution::{Point, PointStatus};
@@ -51,6 +52,7 @@ pub struct Condensed<'a> {
     /// Sizes against which the motion of every point is accurate, at the unknowns whose tangents were
     /// evaluated last.
     pub(super) sizes: Vec<f64>,
+    pub(super) by_products: ByProducts,
     /// Whether nothing holds the mean in the last direction that was asked for.
     pub(super) free: bool,
     /// Whether that direction has a mean that rounding moves: equations that hold say nothing of it.
@@ -86,6 +88,7 @@ impl<'a> Condensed<'a> {
             interrupted: None,
             factor: None,
             sizes: Vec::new(),
+            by_products: ByProducts::default(),
             free: false,
             loose: false,
             profile: Profile::default(),

@@ -17,6 +17,7 @@ use crate::model::Model;
 use crate::solve::System as _;
 use crate::timing::Profile;
 use crate::Error;
+use std::cell::OnceCell;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -42,6 +43,8 @@ pub struct ForcedBalance<'a> {
     /// Whether further branches are looked for.
     pub(super) further: bool,
     share: f64,
+    /// Frequencies at which nothing bounds the motion, once they are asked for [rad/s].
+    pub(super) unbounded: OnceCell<Vec<f64>>,
     pub(super) profile: Profile,
 }
 
@@ -103,6 +106,7 @@ impl<'a> ForcedBalance<'a> {
             rescue: None,
             further: false,
             share: 0.0,
+            unbounded: OnceCell::new(),
             profile: Profile::default(),
         })
     }

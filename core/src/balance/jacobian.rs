@@ -7,7 +7,6 @@ use super::krylov_newton::{KrylovNewton, Products};
 use super::linear::{Factor, Linear};
 use super::ring::{RingNewton, RingSeries};
 use super::slip_jacobian::{Answers, Border, Loads, SlipJacobian};
-use crate::contact::SlipLoad;
 use crate::model::Model;
 use crate::solve::{norm, Parametrised, System};
 use crate::structure::{Compliance as _, ContactCoordinates, ModalOrders};
@@ -58,19 +57,7 @@ impl Condensed<'_> {
         }
     }
 
-    /// Assembles `I − G ∂Q` of all points.
-    pub(super) fn assemble_all(&self) -> Mat<f64> {
-        let size = self.stuck.len();
-        let mut matrix = Mat::<f64>::identity(size, size);
-        for (load, points) in self.loads.iter().zip(self.model.points()) {
-            if load.active {
-                self.subtract_contact(load, points.clone(), &mut matrix);
-            }
-        }
-        matrix
-    }
-
-    fn tangents(&self) -> Loads<'_> {
+    pub(super) fn tangents(&self) -> Loads<'_> {
         let slots = self.table.harmonics().slots();
         Loads { loads: &self.loads, points: self.model.points(), slots }
     }
@@ -147,14 +134,14 @@ impl Condensed<'_> {
     }
 
     /// Points of the contacts that yield.
-    fn active_points(&self) -> Vec<usize> {
+    pub(super) fn active_points(&self) -> Vec<usize> {
         (self.loads.iter().zip(self.model.points()))
             .filter(|(load, _)| load.active)
             .flat_map(|(_, points)| points.clone())
             .collect()
     }
 
-    fn products<'b>(
+    pub(super) fn products<'b>(
         &'b self,
         modes: &'b dyn ContactCoordinates,
         orders: &'b ModalOrders,
@@ -166,42 +153,6 @@ impl Condensed<'_> {
             sizes: &self.sizes,
             fine: self.fine,
             interrupted: self.interrupted,
-        }
-    }
-
-    /// Subtracts `G ∂Q` of one contact.
-    fn subtract_contact(
-        &self,
-        load: &SlipLoad,
-        points: std::ops::Range<usize>,
-        matrix: &mut Mat<f64>,
-    ) {
-        let harmonics = self.table.harmonics();
-        let slots = harmonics.slots();
-        let contacts = self.model.compliance().contacts();
-        let size = points.len() * slots;
-        let Linear::Dense(receptances) = &self.linear else { return };
-        for (receptance, order) in receptances.iter().zip(harmonics.orders()) {
-            let Some(slot) = harmonics.slot(order) else { continue };
-            for point in 0..contacts {
-                let target = point * slots + slot;
-                for (local, source) in points.clone().enumerate() {
-                    let g = receptance.contact[source * contacts + point];
-                    let cosines = &load.tangent[(local * slots + slot) * size..][..size];
-                    if order == 0 {
-                        for (j, dq) in cosines.iter().enumerate() {
-                            matrix[(target, points.start * slots + j)] -= g.re * dq;
-                        }
-                        continue;
-                    }
-                    let sines = &load.tangent[(local * slots + slot + 1) * size..][..size];
-                    for (j, (a, b)) in cosines.iter().zip(sines).enumerate() {
-                        let column = points.start * slots + j;
-                        matrix[(target, column)] -= g.re * a + g.im * b;
-                        matrix[(target + 1, column)] -= g.re * b - g.im * a;
-                    }
-                }
-            }
         }
     }
 }
@@ -269,6 +220,13 @@ impl System for Condensed<'_> {
             self.factorise();
             self.profile.factorisations += 1;
         }
+        if matches!(self.factor, Some(Factor::Krylov(_))) && !self.solve_by_products(rhs, step) {
+            if self.interrupted() || !self.form_instead() {
+                return false;
+            }
+            self.factorise();
+            self.profile.factorisations += 1;
+        }
         let harmonics = self.table.harmonics();
         match (&self.factor, &self.linear) {
             (Some(Factor::Dense(factor)), _) => {
@@ -277,16 +235,13 @@ impl System for Condensed<'_> {
             (Some(Factor::Ring(factor)), Linear::Ring { orders, .. }) => {
                 factor.solve(RingSeries::new(orders, harmonics), rhs, step);
             }
-            (Some(Factor::Krylov(factor)), Linear::Modal(orders)) => {
-                let Some(modes) = self.model.compliance().contact_modes() else { return false };
-                let products = self.products(modes, orders);
-                let Some(count) = factor.solve(products, rhs, step) else { return false };
-                self.profile.products += count;
-            }
+            // Found already.
+            (Some(Factor::Krylov(_)), Linear::Modal(_)) => {}
             _ => return false,
         }
         self.profile.linear_solve += start.elapsed();
         self.judge_mean(step, norm(rhs));
+        self.form_if_cheaper();
         !self.free && step.iter().all(|s| s.is_finite())
     }
 }
@@ -305,9 +260,10 @@ impl Parametrised for Condensed<'_> {
         }
     }
 
-    /// Whether nothing holds the mean of many contacts in the last direction that was asked for.
+    /// Whether nothing holds the mean of many contacts in the last direction that was asked for, or products
+    /// lead to none and a matrix is too large.
     fn is_lost(&self) -> bool {
-        self.free && matches!(self.linear, Linear::Modal(_))
+        matches!(self.linear, Linear::Modal(_)) && (self.free || self.by_products.are_lost())
     }
 
     fn easy_start(&self, x: &mut [f64]) {

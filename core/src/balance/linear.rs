@@ -52,7 +52,8 @@ impl Linear {
         }
     }
 
-    fn dense(table: &SampleTable, slopes: bool) -> Self {
+    /// Dense receptances.
+    pub(super) fn dense(table: &SampleTable, slopes: bool) -> Self {
         let blank = Receptance { slope: slopes.then(Default::default), ..Receptance::default() };
         Self::Dense(vec![blank; table.harmonics().orders().count()])
     }

@@ -9,6 +9,7 @@ mod enough;
 mod estimate;
 mod evaluation;
 mod forced;
+mod formed;
 mod from_orbit;
 mod history;
 mod jacobian;
@@ -39,6 +40,7 @@ mod solution;
 mod statics;
 mod tangent;
 mod unknowns;
+mod without_bound;
 
 pub(crate) use cycle::oscillation;
 pub use cycle::{CycleBalance, Onset};

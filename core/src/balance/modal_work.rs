@@ -5,6 +5,8 @@ use crate::structure::Compliance;
 
 /// Unknowns of the largest Jacobian that is formed where products with the modes would do.
 const LARGEST_FORMED: usize = 2000;
+/// The same of all contacts, whose receptances are formed with it.
+const LARGEST_OF_ALL: usize = 8000;
 /// Products with all contacts that the solution of a point takes.
 const PRODUCTS: f64 = 60.0;
 /// Of them a Newton step takes these, with the contacts that slip, …
@@ -50,4 +52,24 @@ pub(super) fn of_step(compliance: &dyn Compliance, slots: f64, slipping: f64, co
         return whole + PRODUCTS_OF_COUPLED * (product + tangents);
     }
     whole + PRODUCTS_OF_STEP * product
+}
+
+/// Whether the Jacobian of so many points that slip, among all, may be formed after all.
+pub(super) fn may_be_formed(compliance: &dyn Compliance, slots: usize, slipping: usize) -> bool {
+    let all = compliance.contacts() * slots;
+    slipping * slots <= LARGEST_FORMED && all <= LARGEST_OF_ALL
+}
+
+/// Whether so many products cost more than to form the Jacobian and to factor it.
+pub(super) fn is_cheaper_formed(
+    compliance: &dyn Compliance,
+    slots: usize,
+    slipping: usize,
+    products: usize,
+) -> bool {
+    let Some(modes) = compliance.contact_modes() else { return false };
+    let (slots, slipping) = (slots as f64, slipping as f64);
+    let formed = 2.0 * slots * modes.size() as f64 * (compliance.contacts() as f64).powi(2);
+    let factored = 2.0 / 3.0 * (slots * slipping).powi(3);
+    products as f64 * modes.work(slipping, slots) > formed + factored
 }

@@ -33,7 +33,7 @@ pub(super) struct Remainder {
 /// The part of a load that forces do not balance; of forces without bound nothing is left. Zero or not is for the
 /// caller to say, who knows how much friction does along it.
 pub(super) fn remainder(load: &[c64], forces: &[Bounded]) -> Remainder {
-    let unlimited = forces.iter().filter(|force| !(force.most < f64::MAX));
+    let unlimited = forces.iter().filter(|force| force.most >= f64::MAX);
     let beyond = Beyond::of(unlimited.map(|force| force.effect.as_slice()));
     let load = beyond.without(load);
     let limited = forces.iter().filter(|force| force.most < f64::MAX);

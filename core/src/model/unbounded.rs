@@ -42,7 +42,24 @@ impl Model {
         (low, high): (f64, f64),
         progress: &Progress<'_>,
     ) -> Result<Vec<Option<f64>>, Error> {
-        let mut found: Vec<Option<f64>> = vec![None; self.structure.dofs()];
+        let mut lowest: Vec<Option<f64>> = vec![None; self.structure.dofs()];
+        for (omega, dofs) in self.unbounded_resonances(progress)? {
+            for dof in dofs.into_iter().filter(|_| (low..=high).contains(&omega)) {
+                lowest[dof] = Some(lowest[dof].map_or(omega, |known| known.min(omega)));
+            }
+        }
+        Ok(lowest)
+    }
+
+    /// All frequencies of the excitation at which nothing bounds the motion, each with the DOFs that show it.
+    ///
+    /// # Errors
+    /// As [`Model::unbounded`].
+    pub(crate) fn unbounded_resonances(
+        &self,
+        progress: &Progress<'_>,
+    ) -> Result<Vec<(f64, Vec<usize>)>, Error> {
+        let mut found = Vec::new();
         if !self.knows_its_states() {
             return Ok(found);
         }
@@ -60,11 +77,7 @@ impl Model {
             let bearing = Bearing::of(self, harmonic, square_wave(1, 1));
             for one in self.unbounded_by(&bearing, &state) {
                 let omega = state.poles.values[one.poles[0]].im / harmonic as f64;
-                if (low..=high).contains(&omega) {
-                    for dof in one.dofs {
-                        found[dof] = Some(found[dof].map_or(omega, |known| known.min(omega)));
-                    }
-                }
+                found.push((omega, one.dofs));
             }
             last = Some((diameter, state));
         }
@@ -146,7 +159,8 @@ fn undamped_clusters(state: &State) -> Vec<Vec<usize>> {
     clusters
 }
 
-/// Undamped poles of one frequency, under what drives and slows them.
+/// Undamped poles of one frequency, under what drives and slows them: a motion that grows without a bound makes
+/// square waves of its own harmonic, whatever the lowest one is.
 struct Cluster<'a> {
     state: &'a State,
     bearing: &'a Bearing,
@@ -232,7 +246,7 @@ impl Cluster<'_> {
 
     /// The forces of all points: those of contacts that grow have no limit.
     fn forces(&self) -> Vec<Bounded> {
-        let most = |i: usize| self.bearing.share * self.bearing.limits[i];
+        let most = |i: usize| square_wave(1, 1) * self.bearing.limits[i];
         let growing = (0..self.grows.len()).filter(|&i| self.grows[i] && self.sees(i));
         let growing = growing.map(|i| Bounded { effect: self.effects(i), most: f64::INFINITY });
         let lines = self.lines().map(|i| Bounded { effect: self.effects(i), most: most(i) });
@@ -253,7 +267,7 @@ impl Cluster<'_> {
         let limit = |i: usize| self.bearing.limits[i];
         let lines = self.lines().map(|i| does(i).norm() * limit(i));
         let planes = self.planes().map(|&[a, b]| most_of_a_traction([does(a), does(b)]) * limit(a));
-        self.bearing.share * (lines.sum::<f64>() + planes.sum::<f64>())
+        square_wave(1, 1) * (lines.sum::<f64>() + planes.sum::<f64>())
     }
 
     /// The basis T of the poles in which their shapes R T have equal modal masses and none between them: the

@@ -51,6 +51,8 @@ pub(super) struct Cycle {
     pub(super) columns: usize,
     /// Derivative of the slider's start, which are the last two of these numbers if there are so many.
     pub(super) start_rate: Option<Vec<f64>>,
+    /// Whether slip in the plane was too sudden to be followed: its force is not known.
+    pub(super) unresolved: bool,
 }
 
 /// Integrals of the slip load over the period, times 2 over its length, and their derivatives.
@@ -68,7 +70,7 @@ pub(super) struct Response {
 impl Cycle {
     /// A cycle without a past, differentiated in so many numbers.
     pub(super) fn new(stretches: Vec<Stretch>, columns: usize) -> Self {
-        Self { stretches, columns, start_rate: None }
+        Self { stretches, columns, start_rate: None, unresolved: false }
     }
 
     fn has(&self, of: impl Fn(&State) -> bool) -> bool {
@@ -141,6 +143,9 @@ impl Cycle {
         }
         self.add_stuck(drive, &mut slider, &mut rate);
         self.add_turning(drive, &mut slider, &mut rate);
+        if self.unresolved {
+            slider.fill(f64::NAN);
+        }
         let own = drive.columns();
         let varies = |rate: &[f64]| rate.iter().any(|rate| *rate != 0.0);
         let moves = self.start_rate.as_ref().is_some_and(|rate| varies(rate))

@@ -176,7 +176,7 @@ impl Period<'_> {
             let mut slider = march.begin(position);
             march.confine(theta, &mut slider, NEARLY_WITHIN);
             march.follow(theta, end, &mut slider, false);
-            if !march.slipped {
+            if !march.slipped || march.unresolved {
                 return None;
             }
             let (after, width) = (slider.position.map(|s| self.mirror() * s), march.width());
@@ -223,7 +223,7 @@ impl Period<'_> {
             slider.position = slider.position.map(|s| self.mirror() * s);
             slider.rate.iter_mut().for_each(|rate| *rate *= self.mirror());
             let moved = (slider.position[0] - before[0]).hypot(slider.position[1] - before[1]);
-            if !first.slipped || moved <= PERIODIC * plane.scale {
+            if !first.slipped || first.unresolved || moved <= PERIODIC * plane.scale {
                 break;
             }
             if lap == PUSHES || lap + 1 == MOST_LAPS {

@@ -18,8 +18,8 @@ const AT_LIMIT: f64 = 1e-13;
 const AT_REST: f64 = 1e-9;
 /// Panels as short as this are taken as they are.
 const SHORTEST: f64 = 1e-9;
-/// Panels of a lap per harmonic from which on they are taken as they are: a contact that is moved a thousand
-/// million times as far as it slips at turns within an angle that nothing resolves.
+/// Panels of a lap per harmonic after which it is not resolved: a contact that is moved a thousand million times
+/// as far as it slips at turns within an angle that nothing resolves.
 const MOST_PANELS: usize = 200;
 /// Most changes between stick and slip per harmonic and period: more are rounding.
 const MOST_CHANGES: usize = 64;
@@ -41,6 +41,8 @@ pub(super) struct March<'a> {
     pub(super) coefficients: bool,
     pub(super) stretches: Vec<Stretch>,
     pub(super) slipped: bool,
+    /// Whether the panels were spent before the end.
+    pub(super) unresolved: bool,
     /// What counts as resolved.
     pub(super) resolved: f64,
     /// Start and length of the panels that a lap before has had, as long as they may be here.
@@ -61,6 +63,7 @@ impl<'a> March<'a> {
             coefficients,
             stretches: Vec::new(),
             slipped: false,
+            unresolved: false,
             resolved: RESOLVED,
             hints: Vec::new(),
         }
@@ -85,7 +88,8 @@ impl<'a> March<'a> {
 
     /// The cycle that has been marched; the derivative of its start, if it depends on that.
     pub(super) fn into_cycle(self, start_rate: Option<Vec<f64>>) -> Cycle {
-        Cycle { stretches: self.stretches, start_rate, columns: self.drive.columns() + 2 }
+        let (stretches, unresolved) = (self.stretches, self.unresolved);
+        Cycle { stretches, start_rate, columns: self.drive.columns() + 2, unresolved }
     }
 
     /// Moves the start of the march, and all that depends on it, by a little.
@@ -281,8 +285,11 @@ impl<'a> March<'a> {
             };
             let error = panel.error(self.plane, self.resolved);
             let tried = length;
-            let spent = self.stretches.len() > most;
-            if error > 1.0 && length > SHORTEST && !spent {
+            if self.stretches.len() > most {
+                self.unresolved = true;
+                return end;
+            }
+            if error > 1.0 && length > SHORTEST {
                 length *= (0.8 * error.powf(-1.0 / NODES as f64)).clamp(0.1, 0.8);
                 continue;
             }
@@ -302,7 +309,7 @@ impl<'a> March<'a> {
             theta = if !ended && length == left { end } else { panel.end() };
             angle = panel.last_angle;
             let grown = tried * (0.9 * error.powf(-1.0 / NODES as f64)).clamp(0.3, 2.0);
-            panel.wanted = if spent { self.plane.longest } else { grown.min(self.plane.longest) };
+            panel.wanted = grown.min(self.plane.longest);
             length = panel.wanted;
             let state = State::Turning(Box::new(panel));
             self.stretches.push(Stretch { start: from, end: theta, state });
