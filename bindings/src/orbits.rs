@@ -3,14 +3,14 @@
 use crate::arrays::{check_samples, table};
 use crate::columns::Columns;
 use crate::problem::Problem;
-use crate::response::{curve, in_order, keeping};
+use crate::response::{curve, keeping};
 use crate::settings::{measure, orbit};
 use crate::watch::whole;
 use numpy::PyArray2;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::sync::Arc;
-use stickslip_core::balance::Settings;
+use stickslip_core::balance::{in_order, Settings};
 use stickslip_core::design::bound_orbits;
 use stickslip_core::fourier::Measure;
 use stickslip_core::motion::{transient, Scheme, TransientSettings};

@@ -8,12 +8,11 @@ use crate::watch::{given_up, watched};
 use numpy::{Complex64, PyArray1};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use std::collections::{HashMap, VecDeque};
 use std::mem::take;
 use std::sync::Arc;
 use stickslip_core::balance::{
-    self, sweep, sweep_range, CurveEnd, ForcedBalance, HarmonicChoice, Kept, Point, PointStatus,
-    Progress, Settings, HIGHEST_ORDER,
+    self, in_order, sweep, sweep_range, CurveEnd, ForcedBalance, HarmonicChoice, Kept, Point,
+    PointStatus, Progress, Settings, HIGHEST_ORDER,
 };
 use stickslip_core::design::bound;
 use stickslip_core::fourier::{self, Harmonics, Measure, SampleTable};
@@ -53,17 +52,6 @@ pub fn keeping<K: Send + Sync + 'static, T: Send + 'static>(
     }
     let points = kept.lock().map(|mut points| take(&mut *points)).unwrap_or_default();
     rest(points).ok_or_else(given_up)
-}
-
-/// Brings points that were kept as they were found into the order of the frequencies; those of one frequency
-/// stay in theirs.
-pub fn in_order<T>(points: &mut [Arc<T>], order: &[f64], omega: impl Fn(&T) -> f64) {
-    let mut places: HashMap<u64, VecDeque<usize>> = HashMap::new();
-    for (place, own) in order.iter().enumerate() {
-        places.entry(own.to_bits()).or_default().push_back(place);
-    }
-    let mut next = |point: &T| places.get_mut(&omega(point).to_bits())?.pop_front();
-    points.sort_by_cached_key(|point| next(point));
 }
 
 /// What is asked of a balance.

@@ -13,6 +13,7 @@ mod formed;
 mod from_orbit;
 mod history;
 mod jacobian;
+mod kept;
 mod krylov_newton;
 #[cfg(test)]
 mod krylov_tests;
@@ -48,6 +49,8 @@ pub(crate) use evaluation::Evaluated;
 pub use forced::ForcedBalance;
 pub(crate) use forced::WarmStart;
 pub use history::with_history;
+pub(crate) use kept::keep;
+pub use kept::{in_order, Kept};
 pub(crate) use limit_load::{is_carried_away, is_let_go};
 pub use linearised::{Cause, FrequencyJets, Linearised};
 pub(crate) use peak::brent;
@@ -83,14 +86,4 @@ pub trait ExactOrbits {
     /// Contact displacements of a motion that settles in time where there are no exact orbits, their
     /// amplitudes up to `highest`, contact after contact.
     fn settled(&self, omega: f64, highest: usize) -> Option<Vec<faer::c64>>;
-}
-
-/// Where a sweep puts its points as they are solved, for one who does not wait for its end.
-pub type Kept<T> = std::sync::Mutex<Vec<std::sync::Arc<T>>>;
-
-/// Puts a point where it is kept.
-pub(crate) fn keep<T>(kept: Option<&Kept<T>>, point: &std::sync::Arc<T>) {
-    if let Some(Ok(mut points)) = kept.map(std::sync::Mutex::lock) {
-        points.push(std::sync::Arc::clone(point));
-    }
 }

@@ -71,5 +71,5 @@ pub(super) fn is_cheaper_formed(
     let (slots, slipping) = (slots as f64, slipping as f64);
     let formed = 2.0 * slots * modes.size() as f64 * (compliance.contacts() as f64).powi(2);
     let factored = 2.0 / 3.0 * (slots * slipping).powi(3);
-    products as f64 * modes.work(slipping, slots) > formed + factored
+    WORTH * products as f64 * modes.work(slipping, slots) > formed + factored
 }

@@ -1,0 +1,56 @@
+//! Points of a sweep as they are solved, for one who does not wait for its end.
+
+use std::collections::{HashMap, VecDeque};
+use std::sync::{Arc, Mutex};
+
+/// Where a sweep puts its points as they are solved, for one who does not wait for its end.
+pub type Kept<T> = Mutex<Vec<Arc<T>>>;
+
+/// Puts a point where it is kept.
+pub(crate) fn keep<T>(kept: Option<&Kept<T>>, point: &Arc<T>) {
+    if let Some(Ok(mut points)) = kept.map(Mutex::lock) {
+        points.push(Arc::clone(point));
+    }
+}
+
+/// Brings points that were kept as they were found into the order of the frequencies of their sweep; those of
+/// one frequency, to which it may come back, stay in theirs.
+pub fn in_order<T>(points: &mut [Arc<T>], order: &[f64], omega: impl Fn(&T) -> f64) {
+    let mut places: HashMap<u64, VecDeque<usize>> = HashMap::new();
+    for (place, own) in order.iter().enumerate() {
+        places.entry(own.to_bits()).or_default().push_back(place);
+    }
+    let mut next = |point: &T| places.get_mut(&omega(point).to_bits())?.pop_front();
+    points.sort_by_cached_key(|point| next(point));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Points with their frequency and the number under which they were found.
+    fn ordered(found: &[f64], order: &[f64]) -> Vec<(f64, usize)> {
+        let mut points: Vec<Arc<(f64, usize)>> =
+            found.iter().enumerate().map(|(number, omega)| Arc::new((*omega, number))).collect();
+        in_order(&mut points, order, |point| point.0);
+        points.iter().map(|point| **point).collect()
+    }
+
+    #[test]
+    fn a_sweep_up_and_down_that_is_given_up_keeps_its_order() {
+        let order = [1.0, 2.0, 3.0, 2.0, 1.0];
+        // As it goes: what was found last is on the way down, not beside its like on the way up.
+        let found = ordered(&order[..4], &order);
+        assert_eq!(found, [(1.0, 0), (2.0, 1), (3.0, 2), (2.0, 3)]);
+        assert_eq!(ordered(&order, &order)[4], (1.0, 4));
+    }
+
+    #[test]
+    fn pieces_that_were_found_side_by_side_are_joined() {
+        let order = [4.0, 3.0, 2.0, 1.0, 2.0];
+        let found = ordered(&[2.0, 4.0, 1.0, 3.0, 2.0], &order);
+        assert_eq!(found, [(4.0, 1), (3.0, 3), (2.0, 0), (1.0, 2), (2.0, 4)]);
+        // A piece behind a gap stays behind it.
+        assert_eq!(ordered(&[1.0, 4.0], &order), [(4.0, 1), (1.0, 0)]);
+    }
+}
