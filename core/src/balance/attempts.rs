@@ -34,10 +34,13 @@ impl ForcedBalance<'_> {
         if !failed || resolution.samples.is_some() || self.follows() {
             return Ok(solved);
         }
-        if let Some(point) = self.solve_by_fewer(resolution, omega)? {
+        let (found, by_fewer) = self.solve_by_fewer(resolution, omega)?;
+        if let Some(point) = found {
             return Ok(point);
         }
-        if solved.status != PointStatus::Stalled {
+        // Where many harmonics fail of which fewer have a solution, a homotopy takes long and hardly leads on.
+        let hopeless = by_fewer && !self.has_short_homotopies(resolution.harmonics);
+        if solved.status != PointStatus::Stalled || hopeless {
             return Ok(solved);
         }
         // Samples blur the edges between states at which an exact law may hold Newton's method up.

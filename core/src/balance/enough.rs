@@ -47,7 +47,13 @@ impl ForcedBalance<'_> {
         let mut start = start.cloned();
         let mut climb = Climb::default();
         loop {
-            let mut point = self.solve_with(resolution, omega, start.as_ref())?;
+            // What is solved below stands where more harmonics are dear and fail from there.
+            let dear = climb.below.is_some() && !self.is_worth_a_homotopy(resolution.harmonics);
+            let mut point = if dear {
+                self.attempt(resolution, omega, start.as_ref())?
+            } else {
+                self.solve_with(resolution, omega, start.as_ref())?
+            };
             climb.iterations += point.iterations;
             point.iterations = climb.iterations;
             resolution = match point.status {

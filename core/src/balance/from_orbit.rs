@@ -45,6 +45,11 @@ impl ForcedBalance<'_> {
         !self.control.only_harmonics_climb() || price.allows_homotopy(order)
     }
 
+    /// Whether a homotopy in harmonics up to `order` with all contacts in slip ends before anybody waits for it.
+    pub(super) fn has_short_homotopies(&self, order: usize) -> bool {
+        self.price(self.model.compliance().contacts()).ends_homotopy(order)
+    }
+
     /// The exact orbit with harmonics up to `order` as a start, if it is affordable: where harmonics
     /// are chosen, beside what they cost, and in any case for someone who waits.
     pub(super) fn orbit_to_start_from(&self, omega: f64, order: usize) -> Option<Point> {

@@ -18,6 +18,9 @@ const PRODUCTS_OF_COUPLED: f64 = 800.0;
 const PER_OPERATION: f64 = 0.1;
 /// … and so much an entry of their tangents, which come from memory \[ns\].
 const PER_ENTRY: f64 = 0.8;
+/// Operations per unknown by which a product is made orthogonal to those before it, twice, in a basis that is
+/// begun anew at 80.
+const ORTHOGONALISED: f64 = 320.0;
 /// Factorisations that it takes, and the share of the contacts that slip, as a rule.
 const FACTORISATIONS: f64 = 4.0;
 const SLIPPING: f64 = 0.5;
@@ -71,5 +74,6 @@ pub(super) fn is_cheaper_formed(
     let (slots, slipping) = (slots as f64, slipping as f64);
     let formed = 2.0 * slots * modes.size() as f64 * (compliance.contacts() as f64).powi(2);
     let factored = 2.0 / 3.0 * (slots * slipping).powi(3);
-    WORTH * products as f64 * modes.work(slipping, slots) > formed + factored
+    let product = modes.work(slipping, slots) + ORTHOGONALISED * slots * slipping;
+    WORTH * products as f64 * product > formed + factored
 }

@@ -69,7 +69,17 @@ impl Price<'_> {
 
     /// Newton iterations that a homotopy with harmonics up to `order` may take.
     pub(super) fn budget_of_homotopy(&self, order: usize) -> usize {
-        (LONG * ITERATIONS / self.of(order)).clamp(FEWEST, MOST) as usize
+        self.homotopy(order).clamp(FEWEST, MOST) as usize
+    }
+
+    /// Whether the fewest iterations of a homotopy take no longer than they may.
+    pub(super) fn ends_homotopy(&self, order: usize) -> bool {
+        self.homotopy(order) >= FEWEST
+    }
+
+    /// Newton iterations of a homotopy that takes as long as it may.
+    fn homotopy(&self, order: usize) -> f64 {
+        LONG * ITERATIONS / self.of(order)
     }
 
     /// Whether a homotopy to harmonics up to `order` is affordable.

@@ -24,6 +24,8 @@ const WORTHWHILE: usize = 19;
 const ROUGH: NewtonSettings = NewtonSettings { tolerance: 1e-3, max_iterations: 20 };
 /// A first step so small, relative to the motion: the extrapolation is as good.
 const NEAR: f64 = 1e-2;
+/// Solutions of fewer harmonics from which a point is tried: where two do not lead up to it, the others hardly do.
+const MOST_TRIES: usize = 2;
 
 impl ForcedBalance<'_> {
     /// Fewer harmonics, where they cost a small part only and leave out no load.
@@ -67,36 +69,43 @@ impl ForcedBalance<'_> {
 
 impl ForcedBalance<'_> {
     /// A point that Newton's method does not reach from the stuck response: from half as many harmonics,
-    /// or half of those, whichever are solved from there, and back up.
+    /// or half of those, whichever are solved from there, and back up. Whether any were solved is told, too.
     pub(super) fn solve_by_fewer(
         &mut self,
         fine: Resolution,
         omega: f64,
-    ) -> Result<Option<Point>, Error> {
+    ) -> Result<(Option<Point>, bool), Error> {
         let least = self.model.compliance().forced_harmonics().last().copied().unwrap_or(1).max(1);
         let halves = std::iter::successors(Some(fine.harmonics), |highest| Some(highest / 2));
         let mut levels = vec![fine.harmonics];
+        let mut tries = 0;
         for highest in halves.skip(1).take_while(|&highest| highest >= least) {
             levels.push(highest);
             let coarse = Resolution { harmonics: highest, ..fine };
-            let Some(mut start) = self.reached_from_stuck(coarse, omega)? else { continue };
+            let mut start = self.found_by_newton(coarse, omega, None)?;
+            tries += usize::from(start.is_some());
             for &harmonics in levels.iter().rev().skip(1) {
-                let point = self.attempt(Resolution { harmonics, ..fine }, omega, Some(&start))?;
-                match point.unknowns.clone().filter(|_| point.is_solved()) {
-                    Some(_) if harmonics == fine.harmonics => return Ok(Some(point)),
-                    Some(unknowns) => start = unknowns,
-                    None => break,
-                }
+                let Some(below) = start else { break };
+                let above = Resolution { harmonics, ..fine };
+                start = self.found_by_newton(above, omega, Some(&below))?;
+            }
+            if let Some(start) = start {
+                let point = self.attempt(fine, omega, Some(&start))?;
+                return Ok((Some(point).filter(Point::is_solved), true));
+            }
+            if tries == MOST_TRIES {
+                break;
             }
         }
-        Ok(None)
+        Ok((None, tries > 0))
     }
 
-    /// What Newton's method alone finds from the stuck response, if anything.
-    fn reached_from_stuck(
+    /// What Newton's method alone finds from a start, or the stuck response, if anything.
+    fn found_by_newton(
         &mut self,
         at: Resolution,
         omega: f64,
+        start: Option<&Unknowns>,
     ) -> Result<Option<Unknowns>, Error> {
         let table = self.table(at.harmonics);
         let model = self.evaluated(at.samples)?;
@@ -106,7 +115,10 @@ impl ForcedBalance<'_> {
         if equations.set_omega(omega).is_err() {
             return Ok(None);
         }
-        let mut x = equations.stuck_response().to_vec();
+        let mut x = start.map_or_else(
+            || equations.stuck_response().to_vec(),
+            |start| start.recast(table.harmonics()),
+        );
         let outcome = newton(&mut equations, &mut x, self.settings.newton).outcome;
         let found = outcome == Outcome::Converged && is_bounded(&x, equations.stuck_response());
         self.add_profile(&equations.profile);
