@@ -129,6 +129,20 @@ def test_a_plane_moved_far_beyond_its_slip_ends():
     assert not response.converged[0]
 
 
+@pytest.mark.parametrize("law", BOUNDED)
+@pytest.mark.parametrize("coupling", [0.0, 1e3])
+def test_exactly_there_a_solution_is_not_looked_for_long(law, coupling):
+    """No homotopy leads to what does not exist; a millionth beside it the motion is known."""
+    model = undamped([BOUNDED[law](2.0)], coupling)
+    natural = ss.natural_frequencies(undamped([], coupling))[0]
+    response = ss.forced_response(model, [natural, natural * (1.0 + 1e-6)], 3, stability=False)
+    assert response.status == ("singular", "converged")
+    assert response.counters["homotopies"] == 0
+    assert response.counters["evaluations"] < 1000
+    # As good as without friction and without damping.
+    assert 500.0 < response.amplitude("a")[1] < 1500.0
+
+
 @pytest.mark.parametrize(("force", "bounded"), [(0.8, True), (1.2, True), (1.3, False)])
 def test_friction_opposes_a_motion_by_square_waves_of_its_own_harmonic(force, bounded) -> None:
     """The limit of 1 N at any harmonic by 4/pi, however small the load is at the first."""
@@ -182,7 +196,7 @@ def test_a_common_motion_of_equal_blades_is_seen_by_no_contact_between_them(law)
 
 @pytest.mark.parametrize("count", [3, 6, 13])
 def test_a_wave_over_equal_blades_is_bounded_by_what_contacts_see_of_it(count):
-    """Between neighbours it moves by 2 sin(pi/n) of its amplitude: 4/pi of the limit at each end."""
+    """Between neighbours it moves by 2 sin(pi/n) of its amplitude, against 4/pi of the limit."""
     enough = np.pi / 4.0 / (2.0 * np.sin(np.pi / count))
     wave = [ss.Force(f"q{i}", 1.0, phase=2.0 * np.pi * i / count) for i in range(count)]
     for share, expected in ((0.999, True), (1.001, False)):
@@ -216,7 +230,7 @@ def test_a_traction_in_a_plane_between_equal_oscillators():
 
 
 def test_what_a_growing_force_does_not_see_of_equal_blades_is_unbounded():
-    """A cubic spring holds the first blade to the ground, and leaves the sum of the others alone."""
+    """A cubic spring holds the first blade to the ground, and leaves the last one alone."""
     contacts = [*between(2, 5.0), ss.Cubic("q0", stiffness=1e6)]
     model = blades(3, contacts, [ss.Force("q1", 1.0), ss.Force("q2", 1.0)])
     found = model.problem.unbounded(SPAN)
