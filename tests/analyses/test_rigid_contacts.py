@@ -83,3 +83,44 @@ def test_stalled_points_name_the_contacts_that_are_nearly_rigid() -> None:
     assert "rigid-contacts" in [one.code for one in frf.diagnostics]
     solved = ss.forced_response(sliding(6, 2, 1e5), [20.0], 7)
     assert not any(one.code == "rigid-contacts" for one in solved.diagnostics)
+
+
+ELASTIC = {
+    "iwan": lambda dof, k, limit: ss.Iwan(dof, stiffness=k, slip_force=limit, chi=-0.5, beta=0.0),
+    "masing": lambda dof, k, limit: ss.Masing(
+        dof, stiffness=k, slip_force=limit, backbone="exponential"
+    ),
+    "parallel-jenkins": lambda dof, k, limit: ss.ParallelJenkins(
+        dof, stiffness=[0.5 * k, 0.5 * k], slip_forces=[0.25 * limit, 0.75 * limit]
+    ),
+    "structural": lambda dof, k, limit: ss.StructuralDamper(
+        [dof], stiffness=[[k]], slip_forces=[limit]
+    ),
+    "coulomb": lambda dof, k, limit: ss.Coulomb(
+        [dof], normal=None, friction=0.5, tangential_stiffness=k, preload=2.0 * limit
+    ),
+}
+
+
+@pytest.mark.parametrize("law", ELASTIC)
+def test_contacts_of_every_law_are_named(law: str) -> None:
+    """The advice was that of Jenkins elements alone."""
+    model = sliding(6, 2, 1e9)
+    contacts = [ELASTIC[law](one.dof, 1e13, one.slip_force) for one in model.contacts]
+    soft = ss.Jenkins("x0", stiffness=1e3, slip_force=0.1, name="soft")
+    frf = ss.forced_response(
+        ss.Model(model.structure, [*contacts, soft], model.forces), [20.0], 7, stability=False
+    )
+    assert frf.status[0] == "stalled"
+    (told,) = [one for one in frf.diagnostics if one.code == "rigid-contacts"]
+    assert str(told).startswith(f"Nearly rigid: '{law}', '{law}-2', up to ")
+    assert told.data["ratio"] == pytest.approx(1e13 / model.structure.stiffness[1, 1], rel=0.3)
+
+
+def test_a_point_at_a_limit_is_told_of_them_too() -> None:
+    frf = ss.forced_response(sliding(6, 2, 1e7), [20.0], max_harmonics=9)
+    assert frf.status[0] in ("harmonics limit", "effort limit", "stalled")
+    assert "rigid-contacts" in [one.code for one in frf.diagnostics]
+    held = ss.forced_response(sliding(6, 2, 1e3), [20.0], max_harmonics=3)
+    assert held.status[0] == "harmonics limit"
+    assert not any(one.code == "rigid-contacts" for one in held.diagnostics)

@@ -11,7 +11,7 @@ from stickslip.results.arrays import Arrays
 from stickslip.results.diagnostic import Diagnostic
 from stickslip.results.status import Status
 
-RIGID = 1e6
+RIGID = 1e5
 """Stiffness of a contact, over that of the structure at its DOFs, up to which motions are found."""
 
 
