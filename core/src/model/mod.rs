@@ -7,6 +7,7 @@ mod flutter_model;
 mod modal_basis;
 mod resonances;
 mod slipping;
+mod slipping_point;
 mod traction;
 mod unbalanced;
 mod unbounded;

@@ -7,6 +7,7 @@
 
 use super::body::Body;
 use super::contact_states::{partial_sets, slip_sets, State};
+use super::slipping_point::{shift, SlippingPoint};
 use super::traction::most_of_a_traction;
 use super::Model;
 use crate::structure::Poles;
@@ -14,8 +15,6 @@ use crate::Error;
 use faer::{c64, Mat};
 use std::f64::consts::PI;
 
-/// Bisections of an amplitude over up to twelve decades.
-const BISECTIONS: usize = 30;
 /// Share of a product of shapes that is rounding of none.
 pub(super) const NOISE: f64 = 1e-9;
 
@@ -351,59 +350,4 @@ impl Bearing {
         }
         reach
     }
-}
-
-/// A point that slips in a resonance: the effect of its force, what it shows of the motion, its slip
-/// limit and its stiffness.
-struct SlippingPoint {
-    effect: f64,
-    seen: f64,
-    limit: f64,
-    stiffness: f64,
-}
-
-impl SlippingPoint {
-    /// Fundamental of a Jenkins element of this point over its displacement `u`: the stiffness, and
-    /// the force in phase with the velocity (Griffin 1980).
-    fn describing(&self, u: f64) -> [f64; 2] {
-        if self.stiffness * u <= self.limit {
-            return [self.stiffness, 0.0];
-        }
-        let share = self.limit / (self.stiffness * u);
-        let angle = (1.0 - 2.0 * share).acos();
-        let elastic = self.stiffness / PI * (angle - 0.5 * (2.0 * angle).sin());
-        [elastic, 4.0 / PI * self.limit * (1.0 - share)]
-    }
-}
-
-/// By how much friction moves a resonance that a load drives with the rate `driven` against its
-/// `decay`: at the amplitude at which the load makes up for what is lost. To first order in what
-/// the points still carry; the neighbours of a state are states by themselves.
-fn shift<I>(driven: f64, decay: f64, points: &dyn Fn() -> I) -> Option<f64>
-where
-    I: Iterator<Item = SlippingPoint>,
-{
-    let slips = |point: &SlippingPoint| point.effect > 0.0 && point.seen > 0.0 && point.limit > 0.0;
-    let points: Vec<SlippingPoint> = points().filter(slips).collect();
-    let stuck = points.iter().map(|one| one.limit / (one.stiffness * one.seen));
-    let (mut low, mut high) = (stuck.fold(f64::INFINITY, f64::min), driven / decay);
-    let starts = low < high;
-    if !starts {
-        return None;
-    }
-    high = high.min(1e12 * low);
-    let lost = |a: f64| {
-        let friction = points.iter().map(|one| one.effect * one.describing(one.seen * a)[1]);
-        decay * a + friction.sum::<f64>()
-    };
-    for _ in 0..BISECTIONS {
-        let middle = (low * high).sqrt();
-        if lost(middle) < driven {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    let carried = |one: &SlippingPoint| one.effect * one.seen * one.describing(one.seen * low)[0];
-    Some(points.iter().map(carried).sum())
 }
