@@ -5,7 +5,9 @@ use faer::linalg::solvers::Solve as _;
 use faer::traits::ComplexField;
 use faer::{c64, Mat};
 use std::f64::consts::{PI, TAU};
-use stickslip_core::solve::{hermitian_eigen, Block, BlockRow, CyclicTridiagonal};
+use stickslip_core::solve::{
+    hermitian_eigen, Block, BlockRow, CyclicScalars, CyclicTridiagonal, ScalarRow,
+};
 
 /// Largest error of the eigenvalues, of `Vᴴ V = I` and of `Vᴴ A V = Λ`, the first and the last
 /// relative to the largest eigenvalue.
@@ -107,6 +109,36 @@ fn every_number_of_blocks_agrees_with_the_dense_solution() {
         CyclicTridiagonal::new(rows).solve(&mut found);
         for (i, found) in found.iter().enumerate() {
             assert!((expected[(i, 0)] - found).abs() < 1e-12, "{count}");
+        }
+    }
+}
+
+#[test]
+fn every_number_of_scalars_agrees_with_the_dense_solution() {
+    for count in 1..8 {
+        let mut seed = 0.3_f64;
+        let mut random = |shift: f64| {
+            let mut next = || {
+                seed = (seed * 997.0 + 0.123).fract();
+                seed - 0.5
+            };
+            c64::new(next() + shift, next())
+        };
+        let rows: Vec<ScalarRow> = (0..count)
+            .map(|_| ScalarRow { lower: random(0.0), own: random(3.0), upper: random(0.0) })
+            .collect();
+        let mut dense = Mat::<c64>::zeros(count, count);
+        for (i, row) in rows.iter().enumerate() {
+            dense[(i, (i + count - 1) % count)] += row.lower;
+            dense[(i, i)] += row.own;
+            dense[(i, (i + 1) % count)] += row.upper;
+        }
+        let right = Mat::from_fn(count, 1, |i, _| c64::new((1.0 + i as f64).sin(), i as f64));
+        let expected = dense.partial_piv_lu().solve(&right);
+        let mut found: Vec<c64> = (0..count).map(|i| right[(i, 0)]).collect();
+        CyclicScalars::new(&rows).solve(&mut found);
+        for (i, found) in found.iter().enumerate() {
+            assert!((expected[(i, 0)] - found).norm() < 1e-12, "{count}");
         }
     }
 }

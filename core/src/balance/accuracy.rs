@@ -21,6 +21,7 @@ use crate::fourier::{Harmonics, SampleTable};
 use crate::model::Model;
 use crate::solve::{norm, System as _};
 use crate::structure::Quantity;
+use crate::timing::Profile;
 use crate::Error;
 use faer::c64;
 
@@ -45,7 +46,7 @@ const OF_SOLUTION: f64 = 6.0;
 /// the error.
 const ALLOWED: f64 = 3.0;
 /// The same of a ring, of which nearly all is reckoned.
-const ALLOWED_OF_RING: f64 = 1.6;
+const ALLOWED_OF_RING: f64 = 1.0;
 /// The same of many contacts, whose products with the modes are reckoned as they are.
 const ALLOWED_OF_MANY: f64 = 0.25;
 /// The same of many nodes that slip or open, of which nearly all is reckoned.
@@ -70,6 +71,22 @@ pub(super) enum Steps {
     Two,
 }
 
+/// What an estimate may cost, and costs, in reckoned nanoseconds.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Account {
+    /// That of compliances and displacements, with one step.
+    first: f64,
+    /// That of one more step.
+    step: f64,
+}
+
+impl Account {
+    /// With one step or two.
+    pub(super) fn of(&self, two: bool) -> f64 {
+        self.first + if two { self.step } else { 0.0 }
+    }
+}
+
 /// The extended balance of a solution. It follows from the model and the solution and not from the
 /// way to it: at a frequency by itself all methods and starts estimate alike.
 #[derive(Clone, Copy)]
@@ -79,40 +96,30 @@ pub(super) struct Extension {
     pub(super) steps: Steps,
     /// What its changes count, so that they stand for those of harmonics that it cannot afford as well.
     unseen: f64,
+    pub(super) account: Account,
 }
 
 impl Extension {
-    /// The extended balance at a frequency.
-    pub(super) fn new(
-        kept: &Harmonics,
-        omega: f64,
-        model: &Model,
-        slipping: usize,
-        observed: usize,
-    ) -> Self {
-        let highest = kept.highest();
+    /// The extended balance at a frequency. It takes no more than the Newton steps of a solution from nothing
+    /// allow, nor than `credit`.
+    pub(super) fn new(effort: &Effort<'_>, kept: &Harmonics, omega: f64, credit: f64) -> Self {
+        let (highest, model) = (kept.highest(), effort.model);
         let reach = PAST_LAST_MODE * model.compliance().highest_frequency() / omega;
         let least = LEAST * common_divisor(&model.compliance().forced_harmonics());
         let beyond = highest + least.max((SHARE * highest as f64) as usize);
         let farthest = FARTHEST.0 * highest + FARTHEST.1;
         let wanted = (reach.min(farthest as f64) as usize).max(beyond);
-        let effort = Effort { model, half_wave: kept.half_wave(), slipping, observed };
         // The compliances of the kept harmonics are known; all are recovered, after each step.
         let known = effort.orders(highest, [1.0, 0.0]);
-        let is_ring = model.compliance().ring().is_some();
-        let of_many = effort.is_of_many(highest);
-        let coupled = effort.coupled_points() > 1.0;
-        let steps = OF_SOLUTION * effort.step(highest);
         let orders = effort.orders(highest, [1.0, 1.0]);
+        let steps = OF_SOLUTION * effort.step(highest);
+        let account = |order: usize| Account {
+            first: effort.orders(order, [1.0, 1.0]) - known + effort.step(order),
+            step: effort.orders(order, [0.0, 1.0]) + effort.step(order),
+        };
         let affordable = |order: &usize| {
-            let share = match (is_ring, coupled && effort.is_of_many(*order), of_many) {
-                (true, ..) => ALLOWED_OF_RING,
-                (_, true, _) => ALLOWED_OF_NODES,
-                (.., true) => ALLOWED_OF_MANY,
-                _ => ALLOWED,
-            };
-            let allowed = share * steps + (share * orders).min(orders.max(steps));
-            effort.orders(*order, [1.0, 2.0]) - known + 2.0 * effort.step(*order) <= allowed
+            let share = effort.allowed([highest, *order]);
+            account(*order).of(true) <= allowance(share, steps, orders).min(credit)
         };
         let candidates = (highest + least..=wanted).step_by(least);
         let farthest = candidates.take_while(affordable).last();
@@ -121,7 +128,7 @@ impl Extension {
         let sum = |to: usize| 1.0 / (highest + least) as f64 - 1.0 / (to + least) as f64;
         let unseen = sum(wanted.max(order)) / sum(order);
         let steps = if farthest.is_some() { Steps::Two } else { Steps::One };
-        Self { highest: order, steps, unseen }
+        Self { highest: order, steps, unseen, account: account(order) }
     }
 
     /// Whether a neighbour may tell what its second step adds.
@@ -156,15 +163,42 @@ fn common_divisor(numbers: &[usize]) -> usize {
     numbers.iter().copied().fold(0, divisor).max(1)
 }
 
+/// What Newton steps, compliances and displacements of a solution allow an estimate.
+fn allowance(share: f64, steps: f64, orders: f64) -> f64 {
+    share * steps + (share * orders).min(orders.max(steps))
+}
+
 /// About the time of a balance on a common processor \[ns\]; its ratios count.
-struct Effort<'a> {
-    model: &'a Model,
-    half_wave: bool,
-    slipping: usize,
-    observed: usize,
+pub(super) struct Effort<'a> {
+    pub(super) model: &'a Model,
+    pub(super) half_wave: bool,
+    pub(super) slipping: usize,
+    pub(super) observed: usize,
 }
 
 impl Effort<'_> {
+    /// What a solution with harmonics up to `highest` allows an estimate on a curve, by the steps that it took.
+    pub(super) fn earned(&self, highest: usize, taken: &Profile) -> f64 {
+        let whole = taken.factorisations.min(taken.evaluations) as f64;
+        let others = taken.evaluations as f64 - whole;
+        let steps = whole * self.step(highest) + others * self.values(highest);
+        allowance(self.allowed([highest, highest]), steps, self.orders(highest, [1.0, 1.0]))
+    }
+
+    /// Effort of an estimate up to the last order over that of the steps of the solution up to the first.
+    fn allowed(&self, [highest, order]: [usize; 2]) -> f64 {
+        let coupled = self.coupled_points() > 1.0;
+        if self.model.compliance().ring().is_some() {
+            ALLOWED_OF_RING
+        } else if coupled && self.is_of_many(order) {
+            ALLOWED_OF_NODES
+        } else if self.is_of_many(highest) {
+            ALLOWED_OF_MANY
+        } else {
+            ALLOWED
+        }
+    }
+
     /// Of so many evaluations of compliances and recoveries of displacements up to an order.
     fn orders(&self, highest: usize, [evaluations, recoveries]: [f64; 2]) -> f64 {
         let count = if self.half_wave { highest.div_ceil(2) } else { highest + 1 };
@@ -194,16 +228,30 @@ impl Effort<'_> {
         suits(self.model.compliance(), &Harmonics::new(highest, self.half_wave))
     }
 
+    fn slots(&self, highest: usize) -> f64 {
+        if self.half_wave {
+            2.0 * highest.div_ceil(2) as f64
+        } else {
+            2.0 * highest as f64 + 1.0
+        }
+    }
+
+    /// Of the laws without their tangents.
+    fn values(&self, highest: usize) -> f64 {
+        let slots = self.slots(highest);
+        let (contacts, slipping) =
+            (self.model.compliance().contacts() as f64, self.slipping as f64);
+        // Every law looks for turning points, unless amplitudes alone show that it sticks, as nearly all
+        // of a ring do; one that slips integrates.
+        let looks = if self.model.compliance().ring().is_some() { slipping } else { contacts };
+        looks * (600.0 + 40.0 * slots) + slipping * (600.0 + 80.0 * slots)
+    }
+
     /// Of a Newton step in the harmonics up to `highest`.
     fn step(&self, highest: usize) -> f64 {
-        let slots = if self.half_wave { 2 * highest.div_ceil(2) } else { 2 * highest + 1 } as f64;
-        let compliance = self.model.compliance();
-        let (contacts, slipping) = (compliance.contacts() as f64, self.slipping as f64);
-        // Every law looks for turning points, unless amplitudes alone show that it sticks, as nearly all
-        // of a ring do; one that slips integrates and fills its tangent.
-        let looks = if compliance.ring().is_some() { slipping } else { contacts };
-        let laws = looks * (600.0 + 40.0 * slots)
-            + slipping * (600.0 + 80.0 * slots + 2.5 * slots.powi(2));
+        let (compliance, slots) = (self.model.compliance(), self.slots(highest));
+        let slipping = self.slipping as f64;
+        let laws = self.values(highest) + slipping * 2.5 * slots.powi(2);
         let linear = match compliance.ring() {
             Some(ring) => RingNewton::effort(ring, slots, slipping),
             None if self.is_of_many(highest) => {
@@ -226,6 +274,8 @@ pub(super) struct Estimate {
     pub(super) keeps_states: bool,
     /// Whether it ended after the first step because of that.
     pub(super) ended_in_state: bool,
+    /// Whether it took a second step.
+    pub(super) took_two: bool,
 }
 
 /// The estimate of a solution; `solved` are the equations that were solved, if they are at hand. Nothing
@@ -248,6 +298,7 @@ pub(super) fn estimate(
         errors: infinite,
         keeps_states: false,
         ended_in_state: false,
+        took_two: false,
     }));
     let mut extended = Condensed::new(model, table, residual, false);
     extended.watch(interrupted);
@@ -257,8 +308,13 @@ pub(super) fn estimate(
     let mut x = solution.recast(table.harmonics());
     let (mut defect, mut step) = (vec![0.0; x.len()], vec![0.0; x.len()]);
     extended.residual(&x, &mut defect);
-    let mut found =
-        Estimate { errors: zero.clone(), first: zero, keeps_states: true, ended_in_state: false };
+    let mut found = Estimate {
+        errors: zero.clone(),
+        first: zero,
+        keeps_states: true,
+        ended_in_state: false,
+        took_two: false,
+    };
     for last in [false, true] {
         if extended.interrupted() {
             return Ok(None);
@@ -271,6 +327,7 @@ pub(super) fn estimate(
         extended.add_tangent_product(&step, &mut slip_load);
         x.iter_mut().zip(&step).for_each(|(x, s)| *x += s);
         let changes = changes(&extended, &x, &slip_load, observe, point)?;
+        found.took_two = last;
         if last {
             let trusted = if found.keeps_states { TRUSTED } else { f64::INFINITY };
             let errors = found.errors.iter_mut().zip(changes);

@@ -1,6 +1,6 @@
 //! How wrong a solution of the condensed equations is.
 
-use super::accuracy::{estimate, Estimate, Extension};
+use super::accuracy::{estimate, Effort, Estimate, Extension};
 use super::condensed::Condensed;
 use super::forced::ForcedBalance;
 use super::sampling::{finer_than, sampling_errors};
@@ -64,10 +64,17 @@ impl ForcedBalance<'_> {
         if slipping == 0 {
             return Ok(true);
         }
-        let observed = self.observe.len();
-        let whole = Extension::new(harmonics, point.omega, &self.model, slipping, observed);
-        // Where harmonics are chosen, every estimate decides by itself.
-        let follows = whole.has_two() && self.control.is_fixed();
+        let (half_wave, observed) = (harmonics.half_wave(), self.observe.len());
+        let given = self.evaluated(None)?;
+        let effort = Effort { model: &given, half_wave, slipping, observed };
+        // Where harmonics are chosen, every estimate decides by itself. Points of a curve whose frequency is
+        // unknown take more than their steps.
+        let fixed = self.control.is_fixed();
+        let steps = solved.filter(|solved| fixed && !solved.slopes).map(|solved| &solved.profile);
+        let earned = steps.map(|steps| effort.earned(harmonics.highest(), steps));
+        let credit = self.neighbour.credit(point, earned);
+        let whole = Extension::new(&effort, harmonics, point.omega, credit);
+        let follows = whole.has_two() && fixed;
         let solution = Unknowns { harmonics: harmonics.clone(), values: x.to_vec() };
         if follows {
             let (discarded, of) = (whole.discarded(harmonics), self.model.compliance());
@@ -79,9 +86,11 @@ impl ForcedBalance<'_> {
         let growth = if follows { self.neighbour.served(point) } else { None };
         let extension = if growth.is_some() { whole.beside() } else { whole };
         let estimate = self.extended(&solution, solved, point, extension)?;
-        let Some(Estimate { mut errors, first, keeps_states, ended_in_state }) = estimate else {
+        let Some(Estimate { mut errors, first, keeps_states, ended_in_state, took_two }) = estimate
+        else {
             return Ok(false);
         };
+        self.neighbour.pay(extension.account.of(took_two));
         if let Some(growth) = growth.filter(|_| ended_in_state) {
             errors.iter_mut().zip(growth).for_each(|(error, by)| *error *= by);
         } else {

@@ -1,7 +1,7 @@
 //! Points solved by products with the modes are those of dense receptances.
 #![allow(clippy::unwrap_used)]
 
-use super::accuracy::Extension;
+use super::accuracy::{Effort, Extension};
 use super::condensed::Condensed;
 use super::linear::Linear;
 use super::solution::PointStatus;
@@ -265,7 +265,10 @@ fn a_direction_ends_with_the_analysis() {
 fn estimates_of_coupled_points_reach_less_far() {
     let nodes = model(coulomb(28, 2), Damping::Rayleigh, 0.0);
     let alone = model(jenkins(84), Damping::Rayleigh, 0.0);
-    let reach = |model| Extension::new(&Harmonics::new(3, false), 1.0, model, 40, 1).highest;
+    let reach = |model| {
+        let effort = Effort { model, half_wave: false, slipping: 40, observed: 1 };
+        Extension::new(&effort, &Harmonics::new(3, false), 1.0, f64::INFINITY).highest
+    };
     let [nodes, alone] = [&nodes, &alone].map(reach);
     assert!(nodes < alone, "{nodes} and {alone}");
 }

@@ -4,7 +4,8 @@
 //! not take longer. How much the second step of an estimate adds to the first one changes slowly along a
 //! curve: what was found at one point holds for a few after it, as long as the first step makes no contact
 //! begin or cease to slip. Where the motion but for its phase hardly changes, and no discarded harmonic
-//! comes to a mode, the estimate itself goes on as it did between the two points before.
+//! comes to a mode, the estimate itself goes on as it did between the two points before. What solutions take and
+//! estimates do not adds up, so that estimates cost no more than solutions along the curve as a whole.
 
 use super::smooth_piece::{Estimated, SmoothPiece};
 use super::solution::Point;
@@ -23,6 +24,9 @@ pub(super) struct Neighbour {
     /// Its error over that after the first step, of each observed DOF; empty where it is not known.
     growth: Vec<f64>,
     served: usize,
+    /// The last frequency with a slipping contact, and what the solutions so far allow the estimates after it,
+    /// in reckoned nanoseconds.
+    account: Option<(f64, f64)>,
     pub(super) piece: SmoothPiece,
 }
 
@@ -33,6 +37,26 @@ impl Neighbour {
         let suits = near && self.harmonics == point.harmonics && self.served < SERVED;
         self.served += 1;
         (suits && !self.growth.is_empty()).then(|| self.growth.clone())
+    }
+
+    /// What the estimate of a point may take, whose solution has `earned` so much: without a limit where its
+    /// solution began far away, or where nobody knows what it took.
+    pub(super) fn credit(&mut self, point: &Point, earned: Option<f64>) -> f64 {
+        let before = self.account.filter(|(at, _)| (at - point.omega).abs() <= NEAR * at);
+        let credit = before.map_or(0.0, |(_, left)| left) + earned.unwrap_or(0.0);
+        self.account = earned.map(|_| (point.omega, credit));
+        if before.is_some() && earned.is_some() {
+            credit
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    /// Notes what an estimate took.
+    pub(super) fn pay(&mut self, taken: f64) {
+        if let Some((_, credit)) = &mut self.account {
+            *credit = (*credit - taken).max(0.0);
+        }
     }
 
     /// Notes the estimate of a point, with its solution.

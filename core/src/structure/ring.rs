@@ -6,7 +6,7 @@
 //! tridiagonal solution in these DOFs: the effort grows with the number of sectors.
 
 use super::ports::{forced_harmonics, HarmonicLoad, Ports};
-use super::ring_order::{RingLayout, RingOrder};
+use super::ring_order::{RingLayout, RingOrder, SectorReceptances};
 use super::{compliance, Compliance, Outline, Receptance, Structure};
 use crate::Error;
 use faer::{c64, Mat, MatRef};
@@ -140,10 +140,11 @@ impl Ring {
     /// # Errors
     /// A sector that nothing holds (harmonic 0), or one that resonates undamped.
     pub fn order(&self, harmonic: usize, omega: f64, slopes: bool) -> Result<RingOrder, Error> {
-        let blank = Receptance { slope: slopes.then(Default::default), ..Receptance::default() };
-        let mut receptances = vec![blank; self.sectors.len()];
-        for (sector, receptance) in self.sectors.iter().zip(&mut receptances) {
-            sector.receptance(harmonic, omega, receptance)?;
+        let mut own = Receptance { slope: slopes.then(Default::default), ..Receptance::default() };
+        let mut receptances = SectorReceptances::default();
+        for sector in &self.sectors {
+            sector.receptance(harmonic, omega, &mut own)?;
+            receptances.push(&own);
         }
         // Couplings are the same all around, contacts between neighbours need not be.
         let different = if self.layout.between.is_empty() { 1 } else { self.sectors.len() };

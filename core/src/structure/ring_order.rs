@@ -1,18 +1,49 @@
 //! One harmonic of the motion of a ring of sectors.
 
 use super::Receptance;
-use crate::solve::{Block, BlockRow, CyclicTridiagonal};
+use crate::solve::{Block, BlockRow, CyclicScalars, CyclicTridiagonal, ScalarRow};
 use faer::{c64, Mat, MatRef};
 
 /// The sectors' receptances at their ports and the couplings of neighbours, with the factors of
 /// the equations of the interface: `y_i + A_yy (Z y_{i+1} + Zᵀ y_{i−1}) = A_y f_i + a_y`.
 pub struct RingOrder {
     layout: RingLayout,
-    receptances: Vec<Receptance>,
+    receptances: SectorReceptances,
     /// Z_i, which couples sector i to the next one, and its derivative in ω; a single one if all
     /// are the same.
     links: Vec<[Mat<c64>; 2]>,
-    interface: CyclicTridiagonal,
+    interface: Interface,
+}
+
+/// Receptances of sectors one behind the other, in buffers that they share.
+#[derive(Default)]
+pub(super) struct SectorReceptances {
+    count: usize,
+    contact: Vec<c64>,
+    stuck: Vec<c64>,
+    /// Derivatives of the two in ω, if they were asked for.
+    slope: Option<(Vec<c64>, Vec<c64>)>,
+}
+
+impl SectorReceptances {
+    pub(super) fn push(&mut self, sector: &Receptance) {
+        self.count += 1;
+        self.contact.extend_from_slice(&sector.contact);
+        self.stuck.extend_from_slice(&sector.stuck);
+        if let Some((contact, stuck)) = &sector.slope {
+            let (contacts, stucks) = self.slope.get_or_insert_default();
+            contacts.extend_from_slice(contact);
+            stucks.extend_from_slice(stuck);
+        }
+    }
+}
+
+/// Factors of the equations of the interface.
+enum Interface {
+    /// One degree of freedom per sector.
+    One(CyclicScalars),
+    /// Several, or none.
+    Several(CyclicTridiagonal),
 }
 
 /// Motion and forces at the ports of all sectors, sector after sector, and contact displacements.
@@ -29,14 +60,24 @@ pub struct RingMotion {
 impl RingOrder {
     pub(super) fn new(
         layout: RingLayout,
-        receptances: Vec<Receptance>,
+        receptances: SectorReceptances,
         links: Vec<[Mat<c64>; 2]>,
     ) -> Self {
-        let (count, ports, first) = (receptances.len(), layout.ports(), layout.first_interface());
+        let (count, ports, first) = (receptances.count, layout.ports(), layout.first_interface());
         let size = layout.interface.len();
-        let rows: Vec<BlockRow> = (0..count)
-            .map(|i| {
-                let contact = &receptances[i].contact;
+        let link = |i: usize| links[i % count % links.len()][0].as_ref();
+        let sectors = || receptances.contact.chunks_exact((ports * ports).max(1)).enumerate();
+        let interface = if size == 1 {
+            let rows: Vec<ScalarRow> = sectors()
+                .map(|(i, contact)| {
+                    let own = contact[first * ports + first];
+                    let (before, next) = (link(i + count - 1)[(0, 0)], link(i)[(0, 0)]);
+                    ScalarRow { lower: own * before, own: c64::new(1.0, 0.0), upper: own * next }
+                })
+                .collect();
+            Interface::One(CyclicScalars::new(&rows))
+        } else {
+            let row = |(i, contact): (usize, &[c64])| {
                 // What a force of a neighbour moves, A_yy Z.
                 let moved = |link: MatRef<'_, c64>| {
                     real([size, size], |a, b| {
@@ -44,22 +85,21 @@ impl RingOrder {
                         (0..size).map(|c| own(c) * link[(c, b)]).sum()
                     })
                 };
-                let before = &links[(i + count - 1) % count % links.len()][0];
                 BlockRow {
-                    lower: moved(before.transpose()),
+                    lower: moved(link(i + count - 1).transpose()),
                     own: Block::identity(2 * size),
-                    upper: moved(links[i % links.len()][0].as_ref()),
+                    upper: moved(link(i)),
                 }
-            })
-            .collect();
-        let interface = CyclicTridiagonal::new(rows);
+            };
+            Interface::Several(CyclicTridiagonal::new(sectors().map(row).collect()))
+        };
         Self { layout, receptances, links, interface }
     }
 
     /// Number of sectors.
     #[must_use]
     pub fn sectors(&self) -> usize {
-        self.receptances.len()
+        self.receptances.count
     }
 
     /// Number of ports of a sector.
@@ -72,13 +112,14 @@ impl RingOrder {
     #[must_use]
     pub fn is_loaded(&self) -> bool {
         let zero = c64::new(0.0, 0.0);
-        self.receptances.iter().flat_map(|sector| &sector.stuck).any(|u| *u != zero)
+        self.receptances.stuck.iter().any(|u| *u != zero)
     }
 
-    /// Receptance of the ports of a sector, column after column, and its response to its loads.
+    /// Receptance of the ports of a sector, column after column.
     #[must_use]
-    pub fn sector(&self, index: usize) -> &Receptance {
-        &self.receptances[index]
+    pub fn sector(&self, index: usize) -> &[c64] {
+        let size = self.layout.ports().pow(2);
+        &self.receptances.contact[index * size..(index + 1) * size]
     }
 
     /// Coupling of a sector to the next one on the interface.
@@ -91,7 +132,7 @@ impl RingOrder {
     #[must_use]
     pub fn respond(&self, loaded: bool, slip_load: &[c64]) -> RingMotion {
         let RingLayout { contacts, between, .. } = &self.layout;
-        let (count, ports) = (self.receptances.len(), self.layout.ports());
+        let (count, ports) = (self.receptances.count, self.layout.ports());
         let zero = c64::new(0.0, 0.0);
         let mut force = vec![zero; count * ports];
         for i in 0..count {
@@ -103,10 +144,10 @@ impl RingOrder {
             }
         }
         let mut port = vec![zero; count * ports];
+        if loaded {
+            port.copy_from_slice(&self.receptances.stuck);
+        }
         for i in 0..count {
-            if loaded {
-                port[i * ports..(i + 1) * ports].copy_from_slice(&self.receptances[i].stuck);
-            }
             self.add_product(i, ports, &force[i * ports..(i + 1) * ports], &mut port);
         }
         self.couple(port, force)
@@ -115,20 +156,22 @@ impl RingOrder {
     /// Derivative in ω of a response at fixed loads.
     #[must_use]
     pub fn respond_rate(&self, loaded: bool, motion: &RingMotion) -> RingMotion {
-        let (count, ports) = (self.receptances.len(), self.layout.ports());
+        let (count, ports) = (self.receptances.count, self.layout.ports());
         let zero = c64::new(0.0, 0.0);
         let mut port = vec![zero; count * ports];
         let mut change = vec![zero; count * ports];
         self.add_coupling(1, &motion.port, &mut change);
         for i in 0..count {
             let range = i * ports..(i + 1) * ports;
-            if let Some((contact, stuck)) = &self.receptances[i].slope {
+            if let Some((contact, stuck)) = &self.receptances.slope {
+                let contact = &contact[i * ports * ports..(i + 1) * ports * ports];
                 for (column, f) in motion.force[range.clone()].iter().enumerate() {
                     for row in 0..ports {
                         port[i * ports + row] += contact[column * ports + row] * f;
                     }
                 }
                 if loaded {
+                    let stuck = &stuck[range.clone()];
                     port[range.clone()].iter_mut().zip(stuck).for_each(|(p, s)| *p += s);
                 }
             }
@@ -140,19 +183,31 @@ impl RingOrder {
     /// Lets the neighbours act on one another: `port` holds the motion without them, `force` the
     /// forces that cause it.
     fn couple(&self, mut port: Vec<c64>, mut force: Vec<c64>) -> RingMotion {
-        let (count, ports) = (self.receptances.len(), self.layout.ports());
+        let (count, ports) = (self.receptances.count, self.layout.ports());
         let (first, size) = (self.layout.first_interface(), self.layout.interface.len());
-        let mut interface = Vec::with_capacity(count * 2 * size);
-        for i in 0..count {
-            for y in &port[i * ports + first..(i + 1) * ports] {
-                interface.extend([y.re, y.im]);
+        match &self.interface {
+            Interface::One(factors) => {
+                let mut interface: Vec<c64> =
+                    port.iter().skip(first).step_by(ports).copied().collect();
+                factors.solve(&mut interface);
+                let own = port.iter_mut().skip(first).step_by(ports);
+                own.zip(interface).for_each(|(own, y)| *own = y);
             }
-        }
-        self.interface.solve(&mut interface);
-        for i in 0..count {
-            for local in 0..size {
-                let at = i * 2 * size + 2 * local;
-                port[i * ports + first + local] = c64::new(interface[at], interface[at + 1]);
+            Interface::Several(factors) => {
+                let mut interface = Vec::with_capacity(count * 2 * size);
+                for i in 0..count {
+                    for y in &port[i * ports + first..(i + 1) * ports] {
+                        interface.extend([y.re, y.im]);
+                    }
+                }
+                factors.solve(&mut interface);
+                for i in 0..count {
+                    for local in 0..size {
+                        let at = i * 2 * size + 2 * local;
+                        let y = c64::new(interface[at], interface[at + 1]);
+                        port[i * ports + first + local] = y;
+                    }
+                }
             }
         }
         let mut coupling = vec![c64::new(0.0, 0.0); count * ports];
@@ -169,7 +224,7 @@ impl RingOrder {
     /// `u = o_i + w_{i+1}`: what a contact's own sector does, and the next one where it reaches it.
     fn contact_displacement(&self, port: &[c64]) -> Vec<c64> {
         let RingLayout { contacts, between, .. } = &self.layout;
-        let (count, ports) = (self.receptances.len(), self.layout.ports());
+        let (count, ports) = (self.receptances.count, self.layout.ports());
         let mut contact = Vec::with_capacity(count * contacts);
         for i in 0..count {
             contact.extend_from_slice(&port[i * ports..i * ports + contacts]);
@@ -183,7 +238,7 @@ impl RingOrder {
 
     /// Adds the forces `−(Z y_{i+1} + Zᵀ y_{i−1})` of the neighbours, or of the change of Z.
     fn add_coupling(&self, which: usize, port: &[c64], force: &mut [c64]) {
-        let (count, ports) = (self.receptances.len(), self.layout.ports());
+        let (count, ports) = (self.receptances.count, self.layout.ports());
         let (first, size) = (self.layout.first_interface(), self.layout.interface.len());
         for i in 0..count {
             let (next, before) = ((i + 1) % count, (i + count - 1) % count);
@@ -201,7 +256,7 @@ impl RingOrder {
     /// Adds what forces on the ports of a sector move at the first `rows` of them.
     fn add_product(&self, sector: usize, rows: usize, force: &[c64], port: &mut [c64]) {
         let ports = self.layout.ports();
-        let contact = &self.receptances[sector].contact;
+        let contact = self.sector(sector);
         for (column, f) in force.iter().enumerate() {
             if *f == c64::new(0.0, 0.0) {
                 continue;

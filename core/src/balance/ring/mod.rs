@@ -2,6 +2,9 @@
 
 mod answers;
 mod newton;
+#[cfg(test)]
+mod newton_tests;
+mod runs;
 mod series;
 
 pub(super) use answers::RingAnswers;

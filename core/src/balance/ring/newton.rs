@@ -2,14 +2,16 @@
 //!
 //! The slip loads of a contact act on its own sector (and, between neighbours, on the next one),
 //! so that `s = r + G ∂Q s` needs no dense G: contacts inside a sector are eliminated in it, and
-//! what is left couples neighbours alone, harmonic by harmonic mixed by the tangents.
+//! what is left couples neighbours alone, harmonic by harmonic mixed by the tangents. Sectors that stick
+//! mix none, and runs of them take complex numbers (`runs.rs`).
 //!
 //! With the receptance A of a sector and the tangent T of the contacts L inside it, the
 //! elimination takes one dense solution, `W = (I − T A_LL)⁻¹ T`: the receptance of the other ports
 //! R becomes `A_RR + A_RL W A_LR`, and `(I − A_LL T)⁻¹ = I + A_LL W`. Receptances never mix
 //! harmonics, so that products with them are cheap.
 
-use super::series::{Part, RingSeries};
+use super::runs::{coupling, Run};
+use super::series::{link, Part, RingSeries};
 use crate::contact::SlipLoad;
 use crate::solve::{Block, BlockFactors, BlockRow, CyclicTridiagonal};
 use crate::structure::{Ring, RingLayout};
@@ -27,6 +29,10 @@ pub(crate) struct RingNewton {
     /// Where the three parts of R end.
     ends: [usize; 3],
     sectors: Vec<Sector>,
+    /// The sectors that the chain is of, ascending: all but those of runs that stick.
+    left: Vec<usize>,
+    /// Behind each of them, if there are runs.
+    runs: Vec<Run>,
     chain: CyclicTridiagonal,
 }
 
@@ -34,10 +40,10 @@ pub(crate) struct RingNewton {
 struct Sector {
     /// W, if any of L slips.
     slip: Option<Block>,
-    /// Receptance of R with L free to slip.
+    /// Receptance of R with L free to slip; nothing of a sector in a run.
     ports: Block,
-    /// Tangent of the contacts with the next sector.
-    between: Block,
+    /// Tangent of the contacts with the next sector, if any slips.
+    between: Option<Block>,
 }
 
 impl RingNewton {
@@ -57,8 +63,15 @@ impl RingNewton {
     fn efforts(ring: &Ring, slots: f64, active: f64) -> [f64; 2] {
         let (sectors, ports) = (ring.sectors() as f64, ring.layout().ports() as f64);
         let answers = active * sectors * slots * (20.0 + 5.0 * ports.powi(2));
+        let (left, runs) = if Run::suits(ring.layout()) {
+            // A contact with the next sector has two of them left.
+            let reach = if ring.layout().between.is_empty() { 1.0 } else { 2.0 };
+            ((reach * active).min(sectors), sectors * (200.0 + 50.0 * slots))
+        } else {
+            (sectors, 0.0)
+        };
         [
-            sectors * (800.0 + 0.2 * (ports * slots).powi(3)),
+            left * (800.0 + 0.2 * (ports * slots).powi(3)) + runs,
             1e3 + answers + 0.06 * (active * slots).powi(3),
         ]
     }
@@ -78,41 +91,57 @@ impl RingNewton {
         let reach = layout.between.len() * slots;
         let ends = [reach, 2 * reach, rest.len() * slots];
         let mut laws = loads.iter().zip(points).peekable();
-        let sectors: Vec<Sector> = (0..count)
+        let mut sectors: Vec<Sector> = (0..count)
             .map(|i| {
                 let own = i * layout.contacts..(i + 1) * layout.contacts;
                 let mut tangents = Vec::new();
                 while let Some(law) = laws.next_if(|(_, points)| points.end <= own.end) {
                     tangents.push(law);
                 }
-                let mut ports = series.receptance(i, &rest, &rest);
-                let slip = tangent(&tangents, own.start, &local, slots).map(|tangent| {
-                    let inside = Part { sector: i, rows: &local, columns: &local };
-                    let mut matrix = Block::identity(tangent.rows());
-                    series.subtract_product_right(&tangent, inside, &mut matrix);
-                    let mut slip = tangent;
-                    BlockFactors::new(matrix).solve(&mut slip);
-                    let from = Part { sector: i, rows: &local, columns: &rest };
-                    let to = Part { sector: i, rows: &rest, columns: &local };
-                    // Twice subtracted is added.
-                    let mut moved = Block::zeros(slip.rows(), ports.columns());
-                    series.subtract_product_right(&slip, from, &mut moved);
-                    series.subtract_product_left(to, &moved, &mut ports);
-                    slip
-                });
-                let between = tangent(&tangents, own.start, &layout.between, slots);
-                let between = between.unwrap_or_else(|| Block::zeros(reach, reach));
-                Sector { slip, ports, between }
+                let of = |which: &[usize]| tangent(&tangents, own.start, which, slots);
+                Sector { slip: of(&local), ports: Block::default(), between: of(&layout.between) }
             })
             .collect();
-        let rows = (0..count)
-            .map(|i| {
-                let before = (i + count - 1) % count;
-                sectors[i].row(series, [before, i], &sectors[before].between, ends)
+        let slips = |i: usize| sectors[i].slip.is_some() || sectors[i].between.is_some();
+        let reached = |i: usize| sectors[(i + count - 1) % count].between.is_some();
+        let mut left: Vec<usize> = (0..count).filter(|&i| slips(i) || reached(i)).collect();
+        let has_runs = Run::suits(layout) && !left.is_empty();
+        if !has_runs {
+            left = (0..count).collect();
+        }
+        for &i in &left {
+            sectors[i].eliminate(series, i, [&local, &rest]);
+        }
+        let runs = if has_runs { Run::behind(series, layout, &left) } else { Vec::new() };
+        let rows = (0..left.len())
+            .map(|at| {
+                let (own, before) = (left[at], (left[at] + count - 1) % count);
+                let between_before = sectors[before].between.as_ref();
+                let mut row = sectors[own].row(between_before, ends);
+                let (middle, ports) = (ends[1], &sectors[own].ports);
+                if has_runs {
+                    let both = [&runs[(at + left.len() - 1) % left.len()], &runs[at]];
+                    let beside = |index, order: &_| {
+                        Run::beside(both, index, [before, own].map(|i| coupling(order, i)))
+                    };
+                    let (upper, lower) = (&mut row.upper, &mut row.lower);
+                    let own = |k, order: &_, _, _| beside(k, order).own;
+                    series.add_product_link(ports, middle, own, &mut row.own);
+                    let ahead = |k, order: &_, _, _| beside(k, order).ahead;
+                    series.add_product_link(ports, middle, ahead, upper);
+                    let behind = |k, order: &_, _, _| beside(k, order).behind;
+                    series.add_product_link(ports, middle, behind, lower);
+                } else {
+                    let ahead = |_, order: &_, a, b| link(order, own, false, a, b);
+                    series.add_product_link(ports, middle, ahead, &mut row.upper);
+                    let behind = |_, order: &_, a, b| link(order, before, true, a, b);
+                    series.add_product_link(ports, middle, behind, &mut row.lower);
+                }
+                row
             })
             .collect();
         let chain = CyclicTridiagonal::new(rows);
-        Self { slots, layout: layout.clone(), local, rest, ends, sectors, chain }
+        Self { slots, layout: layout.clone(), local, rest, ends, sectors, left, runs, chain }
     }
 
     /// Solves `(I − G ∂Q) step = rhs`, both laid out as the unknowns of all points.
@@ -123,8 +152,10 @@ impl RingNewton {
         let mut ports = vec![0.0; count * total];
         let mut slip = vec![0.0; local.len() * self.slots];
         let mut force = vec![0.0; total];
-        for (i, sector) in self.sectors.iter().enumerate() {
-            let part = &mut ports[i * total..(i + 1) * total];
+        let mut chain = vec![0.0; self.left.len() * total];
+        // Nothing loads a sector that sticks.
+        for (&i, part) in self.left.iter().zip(chain.chunks_exact_mut(total.max(1))) {
+            let sector = &self.sectors[i];
             if let Some(w) = &sector.slip {
                 slip.fill(0.0);
                 w.subtract_from(&self.given(rhs, i, local), &mut slip);
@@ -139,7 +170,28 @@ impl RingNewton {
                 sector.ports.subtract_from(&force, part);
             }
         }
-        self.chain.solve(&mut ports);
+        self.chain.solve(&mut chain);
+        for (&i, part) in self.left.iter().zip(chain.chunks_exact(total.max(1))) {
+            ports[i * total..(i + 1) * total].copy_from_slice(part);
+        }
+        for run in &self.runs {
+            run.fill(series, |i| i * total + middle, &mut ports);
+        }
+        if reach > 0 {
+            let (to, from) = (&rest[..2 * self.layout.between.len()], &self.layout.interface);
+            let first = self.layout.first_interface();
+            let columns: Vec<usize> = (first..first + from.len()).collect();
+            for i in self.runs.iter().flat_map(|run| run.sectors(count)) {
+                let (before, next) = ((i + count - 1) % count, (i + 1) % count);
+                let interface = |of: usize| &ports[of * total + middle..(of + 1) * total];
+                force.fill(0.0);
+                series.add_link(i, false, interface(next), &mut force[middle..]);
+                series.add_link(before, true, interface(before), &mut force[middle..]);
+                let part = &mut ports[i * total..i * total + middle];
+                let between = Part { sector: i, rows: to, columns: &columns };
+                series.subtract_from(between, &force[middle..], part);
+            }
+        }
         let port =
             |i: usize, range: Range<usize>| &ports[i * total + range.start..i * total + range.end];
         let relative = |i: usize| -> Vec<f64> {
@@ -190,37 +242,49 @@ impl RingNewton {
     /// next one and at those of the sector before.
     fn subtract_slip(&self, sectors: [usize; 2], moved: &[Vec<f64>; 2], force: &mut [f64]) {
         let [reach, middle, _] = self.ends;
-        self.sectors[sectors[0]].between.subtract_from(&moved[0], &mut force[..reach]);
-        self.sectors[sectors[1]].between.subtract_from(&moved[1], &mut force[reach..middle]);
+        for (at, range) in [0..reach, reach..middle].into_iter().enumerate() {
+            if let Some(between) = &self.sectors[sectors[at]].between {
+                between.subtract_from(&moved[at], &mut force[range]);
+            }
+        }
     }
 }
 
 impl Sector {
-    /// Block row of the ports R: `z = e + A F` with slip loads `T (o_i + w_{i+1})` and
-    /// `T' (o_{i−1} + w_i)`, and coupling forces `−(Z y_{i+1} + Z'ᵀ y_{i−1})`.
-    fn row(
-        &self,
-        series: RingSeries<'_>,
-        [before, own]: [usize; 2],
-        between_before: &Block,
-        [reach, middle, total]: [usize; 3],
-    ) -> BlockRow {
+    /// Eliminates the contacts L inside the sector, whose tangents are in `slip`.
+    fn eliminate(&mut self, series: RingSeries<'_>, sector: usize, [local, rest]: [&[usize]; 2]) {
+        self.ports = series.receptance(sector, rest, rest);
+        let Some(slip) = &mut self.slip else { return };
+        let inside = Part { sector, rows: local, columns: local };
+        let mut matrix = Block::identity(slip.rows());
+        series.subtract_product_right(slip, inside, &mut matrix);
+        BlockFactors::new(matrix).solve(slip);
+        let from = Part { sector, rows: local, columns: rest };
+        let to = Part { sector, rows: rest, columns: local };
+        // Twice subtracted is added.
+        let mut moved = Block::zeros(slip.rows(), self.ports.columns());
+        series.subtract_product_right(slip, from, &mut moved);
+        series.subtract_product_left(to, &moved, &mut self.ports);
+    }
+
+    /// Block row of the ports R, `z = e + A F`, without the coupling of the interface: slip loads are
+    /// `T (o_i + w_{i+1})` and `T' (o_{i−1} + w_i)`.
+    fn row(&self, between_before: Option<&Block>, [reach, middle, total]: [usize; 3]) -> BlockRow {
         let mut row = BlockRow {
             lower: Block::zeros(total, total),
             own: Block::identity(total),
             upper: Block::zeros(total, total),
         };
-        if reach > 0 {
-            let own_slip = Block::minus_product(&self.ports.column_part(0..reach), &self.between);
-            let behind = self.ports.column_part(reach..middle);
-            let behind_slip = Block::minus_product(&behind, between_before);
-            row.own.add_columns(0, &own_slip);
-            row.own.add_columns(reach, &behind_slip);
-            row.upper.add_columns(reach, &own_slip);
-            row.lower.add_columns(0, &behind_slip);
+        if let Some(between) = &self.between {
+            let slip = Block::minus_product(&self.ports.column_part(0..reach), between);
+            row.own.add_columns(0, &slip);
+            row.upper.add_columns(reach, &slip);
         }
-        series.add_product_link(&self.ports, middle, own, false, &mut row.upper);
-        series.add_product_link(&self.ports, middle, before, true, &mut row.lower);
+        if let Some(between) = between_before {
+            let slip = Block::minus_product(&self.ports.column_part(reach..middle), between);
+            row.own.add_columns(reach, &slip);
+            row.lower.add_columns(0, &slip);
+        }
         row
     }
 }

@@ -36,7 +36,7 @@ impl<'a> RingSeries<'a> {
     }
 
     /// Every kept harmonic with the position of its first coefficient, and whether it has two.
-    fn slot(&self) -> impl Iterator<Item = (&'a RingOrder, usize, bool)> + 'a {
+    pub(super) fn slot(&self) -> impl Iterator<Item = (&'a RingOrder, usize, bool)> + 'a {
         let offset = self.harmonics.offset();
         self.orders.iter().enumerate().map(move |(index, order)| {
             let slot = if offset == 0 { 2 * index } else { (2 * index).saturating_sub(1) };
@@ -128,22 +128,21 @@ impl<'a> RingSeries<'a> {
         }
     }
 
-    /// Adds to the columns of the interface in `out`, from `first` on, those in `matrix` times the
-    /// coupling Z of a sector to the next one, or its transpose.
+    /// Adds to the columns of the interface in `out`, from `first` on, those in `matrix` times a coupling, whose
+    /// entries `link` tells of every harmonic and its position.
     pub(super) fn add_product_link(
         &self,
         matrix: &Block,
         first: usize,
-        sector: usize,
-        transposed: bool,
+        link: impl Fn(usize, &RingOrder, usize, usize) -> c64,
         out: &mut Block,
     ) {
         let slots = self.slots();
-        for (order, slot, oscillates) in self.slot() {
-            let size = order.link(sector).nrows();
+        for (index, (order, slot, oscillates)) in self.slot().enumerate() {
+            let size = order.link(0).nrows();
             for a in 0..size {
                 for b in 0..size {
-                    let z = link(order, sector, transposed, a, b);
+                    let z = link(index, order, a, b);
                     if z != c64::new(0.0, 0.0) {
                         let at = [first + a * slots + slot, first + b * slots + slot];
                         add_columns(matrix, z, at, oscillates, out);
@@ -155,10 +154,10 @@ impl<'a> RingSeries<'a> {
 }
 
 fn receptance(order: &RingOrder, sector: usize, row: usize, column: usize) -> c64 {
-    order.sector(sector).contact[column * order.ports() + row]
+    order.sector(sector)[column * order.ports() + row]
 }
 
-fn link(order: &RingOrder, sector: usize, transposed: bool, a: usize, b: usize) -> c64 {
+pub(super) fn link(order: &RingOrder, sector: usize, transposed: bool, a: usize, b: usize) -> c64 {
     order.link(sector)[if transposed { (b, a) } else { (a, b) }]
 }
 
