@@ -7,6 +7,8 @@ mod condensed;
 mod cycle;
 mod enough;
 mod estimate;
+#[cfg(test)]
+mod estimate_tests;
 mod evaluation;
 mod forced;
 mod formed;
