@@ -1,7 +1,8 @@
 //! How wrong a solution of the condensed equations is.
 
-use super::accuracy::{estimate, Effort, Estimate, Extension};
+use super::accuracy::{estimate, Estimate, Extension};
 use super::condensed::Condensed;
+use super::effort::Effort;
 use super::forced::ForcedBalance;
 use super::sampling::{finer_than, sampling_errors};
 use super::settings::Method;

@@ -2,7 +2,8 @@
 
 #![allow(clippy::unwrap_used)]
 
-use super::accuracy::{Effort, Extension};
+use super::accuracy::Extension;
+use super::effort::Effort;
 use super::neighbour::Neighbour;
 use super::solution::{Point, PointStatus};
 use crate::contact::Jenkins;

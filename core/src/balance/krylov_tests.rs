@@ -1,8 +1,9 @@
 //! Points solved by products with the modes are those of dense receptances.
 #![allow(clippy::unwrap_used)]
 
-use super::accuracy::{Effort, Extension};
+use super::accuracy::Extension;
 use super::condensed::Condensed;
+use super::effort::Effort;
 use super::linear::Linear;
 use super::solution::PointStatus;
 use crate::contact::{

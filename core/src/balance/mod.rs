@@ -5,6 +5,7 @@ mod accuracy;
 mod attempts;
 mod condensed;
 mod cycle;
+mod effort;
 mod enough;
 mod estimate;
 #[cfg(test)]

@@ -1,0 +1,127 @@
+//! What solutions and their error estimates cost, as reckoned before any is made.
+
+use super::modal_work::{of_step, suits};
+use super::ring::RingNewton;
+use crate::fourier::Harmonics;
+use crate::model::Model;
+use crate::timing::Profile;
+
+/// Effort of an estimate over that of the Newton steps of the solution, both as reckoned, and over that of
+/// its compliances and displacements as long as these are the lesser part; else they cost no more than
+/// there. Steps do more than is reckoned: measured, an estimate takes 0.1 to 0.9 times as long as a
+/// solution from nothing. With less, estimates at low frequencies stop short of the stuck modes, and of
+/// the error.
+const ALLOWED: f64 = 3.0;
+/// The same of a ring, of which nearly all is reckoned.
+const ALLOWED_OF_RING: f64 = 1.0;
+/// The same of laws that couple several displacements, along a curve: more of their motion changes with the
+/// harmonics than is reckoned.
+const ALLOWED_OF_COUPLED: f64 = 1.5;
+/// The same of many contacts, whose products with the modes are reckoned as they are.
+const ALLOWED_OF_MANY: f64 = 0.25;
+/// The same of many nodes that slip or open, of which nearly all is reckoned.
+const ALLOWED_OF_NODES: f64 = 0.8;
+
+/// What Newton steps, compliances and displacements of a solution allow an estimate.
+pub(super) fn allowance(share: f64, steps: f64, orders: f64) -> f64 {
+    share * steps + (share * orders).min(orders.max(steps))
+}
+
+/// About the time of a balance on a common processor \[ns\]; its ratios count.
+pub(super) struct Effort<'a> {
+    pub(super) model: &'a Model,
+    pub(super) half_wave: bool,
+    pub(super) slipping: usize,
+    pub(super) observed: usize,
+}
+
+impl Effort<'_> {
+    /// What a solution with harmonics up to `highest` allows an estimate on a curve, by the steps that it took.
+    pub(super) fn earned(&self, highest: usize, taken: &Profile) -> f64 {
+        let whole = taken.factorisations.min(taken.evaluations) as f64;
+        let others = taken.evaluations as f64 - whole;
+        let steps = whole * self.step(highest) + others * self.values(highest);
+        let mut share = self.allowed([highest, highest]);
+        if self.coupled_points() > 1.0 {
+            share = share.min(ALLOWED_OF_COUPLED);
+        }
+        allowance(share, steps, self.orders(highest, [1.0, 1.0]))
+    }
+
+    /// Effort of an estimate up to the last order over that of the steps of the solution up to the first.
+    pub(super) fn allowed(&self, [highest, order]: [usize; 2]) -> f64 {
+        let coupled = self.coupled_points() > 1.0;
+        if self.model.compliance().ring().is_some() {
+            ALLOWED_OF_RING
+        } else if coupled && self.is_of_many(order) {
+            ALLOWED_OF_NODES
+        } else if self.is_of_many(highest) {
+            ALLOWED_OF_MANY
+        } else {
+            ALLOWED
+        }
+    }
+
+    /// Of so many evaluations of compliances and recoveries of displacements up to an order.
+    pub(super) fn orders(&self, highest: usize, [evaluations, recoveries]: [f64; 2]) -> f64 {
+        let count = if self.half_wave { highest.div_ceil(2) } else { highest + 1 };
+        let [mut receptance, displacement] = self.model.compliance().effort(self.observed);
+        if let Some(modes) = self.model.compliance().contact_modes() {
+            if self.is_of_many(highest) {
+                receptance = modes.effort();
+            }
+        }
+        count as f64 * (evaluations * receptance + recoveries * displacement)
+    }
+
+    /// Points of a law that couples several, in the mean over those of all such laws; 1 if there are none.
+    fn coupled_points(&self) -> f64 {
+        let sizes = || self.model.laws().iter().map(|law| law.displacements() as f64);
+        let coupled = || sizes().filter(|size| *size > 1.0);
+        let points: f64 = coupled().sum();
+        if points > 0.0 {
+            coupled().map(|size| size * size).sum::<f64>() / points
+        } else {
+            1.0
+        }
+    }
+
+    /// Whether receptances are not formed.
+    fn is_of_many(&self, highest: usize) -> bool {
+        suits(self.model.compliance(), &Harmonics::new(highest, self.half_wave))
+    }
+
+    fn slots(&self, highest: usize) -> f64 {
+        if self.half_wave {
+            2.0 * highest.div_ceil(2) as f64
+        } else {
+            2.0 * highest as f64 + 1.0
+        }
+    }
+
+    /// Of the laws without their tangents.
+    fn values(&self, highest: usize) -> f64 {
+        let slots = self.slots(highest);
+        let (contacts, slipping) =
+            (self.model.compliance().contacts() as f64, self.slipping as f64);
+        // Every law looks for turning points, unless amplitudes alone show that it sticks, as nearly all
+        // of a ring do; one that slips integrates.
+        let looks = if self.model.compliance().ring().is_some() { slipping } else { contacts };
+        looks * (600.0 + 40.0 * slots) + slipping * (600.0 + 80.0 * slots)
+    }
+
+    /// Of a Newton step in the harmonics up to `highest`.
+    pub(super) fn step(&self, highest: usize) -> f64 {
+        let (compliance, slots) = (self.model.compliance(), self.slots(highest));
+        let slipping = self.slipping as f64;
+        let laws = self.values(highest) + slipping * 2.5 * slots.powi(2);
+        let linear = match compliance.ring() {
+            Some(ring) => RingNewton::effort(ring, slots, slipping),
+            None if self.is_of_many(highest) => {
+                of_step(compliance, slots, slipping, self.coupled_points())
+            }
+            None => 1e3 + 100.0 * slipping * slots + 0.06 * (slipping * slots).powi(3),
+        };
+        laws + linear
+    }
+}
