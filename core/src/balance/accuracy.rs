@@ -88,9 +88,9 @@ impl Extension {
     /// The extended balance at a frequency. It takes no more than the Newton steps of a solution from nothing
     /// allow, nor than `credit`.
     pub(super) fn new(effort: &Effort<'_>, kept: &Harmonics, omega: f64, credit: f64) -> Self {
-        let (highest, model) = (kept.highest(), effort.model);
-        let reach = PAST_LAST_MODE * model.compliance().highest_frequency() / omega;
-        let least = LEAST * common_divisor(&model.compliance().forced_harmonics());
+        let (highest, compliance) = (kept.highest(), effort.compliance());
+        let reach = PAST_LAST_MODE * compliance.highest_frequency() / omega;
+        let least = LEAST * common_divisor(&compliance.forced_harmonics());
         let beyond = highest + least.max((SHARE * highest as f64) as usize);
         let farthest = FARTHEST.0 * highest + FARTHEST.1;
         let wanted = (reach.min(farthest as f64) as usize).max(beyond);

@@ -4,6 +4,7 @@ use super::modal_work::{of_step, suits};
 use super::ring::RingNewton;
 use crate::fourier::Harmonics;
 use crate::model::Model;
+use crate::structure::Compliance;
 use crate::timing::Profile;
 
 /// Effort of an estimate over that of the Newton steps of the solution, both as reckoned, and over that of
@@ -29,20 +30,32 @@ pub(super) fn allowance(share: f64, steps: f64, orders: f64) -> f64 {
 
 /// About the time of a balance on a common processor \[ns\]; its ratios count.
 pub(super) struct Effort<'a> {
-    pub(super) model: &'a Model,
-    pub(super) half_wave: bool,
-    pub(super) slipping: usize,
-    pub(super) observed: usize,
+    model: &'a Model,
+    half_wave: bool,
+    slipping: usize,
+    observed: usize,
+    /// Points that a law couples, in the mean.
+    coupled: f64,
 }
 
-impl Effort<'_> {
+impl<'a> Effort<'a> {
+    /// Of balances with half-wave symmetry or without, with so many points that slip and so many observed
+    /// degrees of freedom.
+    pub(super) fn new(model: &'a Model, half_wave: bool, slipping: usize, observed: usize) -> Self {
+        Self { model, half_wave, slipping, observed, coupled: coupled_points(model) }
+    }
+
+    pub(super) fn compliance(&self) -> &'a dyn Compliance {
+        self.model.compliance()
+    }
+
     /// What a solution with harmonics up to `highest` allows an estimate on a curve, by the steps that it took.
     pub(super) fn earned(&self, highest: usize, taken: &Profile) -> f64 {
         let whole = taken.factorisations.min(taken.evaluations) as f64;
         let others = taken.evaluations as f64 - whole;
         let steps = whole * self.step(highest) + others * self.values(highest);
         let mut share = self.allowed([highest, highest]);
-        if self.coupled_points() > 1.0 {
+        if self.coupled > 1.0 {
             share = share.min(ALLOWED_OF_COUPLED);
         }
         allowance(share, steps, self.orders(highest, [1.0, 1.0]))
@@ -50,8 +63,8 @@ impl Effort<'_> {
 
     /// Effort of an estimate up to the last order over that of the steps of the solution up to the first.
     pub(super) fn allowed(&self, [highest, order]: [usize; 2]) -> f64 {
-        let coupled = self.coupled_points() > 1.0;
-        if self.model.compliance().ring().is_some() {
+        let coupled = self.coupled > 1.0;
+        if self.compliance().ring().is_some() {
             ALLOWED_OF_RING
         } else if coupled && self.is_of_many(order) {
             ALLOWED_OF_NODES
@@ -65,8 +78,8 @@ impl Effort<'_> {
     /// Of so many evaluations of compliances and recoveries of displacements up to an order.
     pub(super) fn orders(&self, highest: usize, [evaluations, recoveries]: [f64; 2]) -> f64 {
         let count = if self.half_wave { highest.div_ceil(2) } else { highest + 1 };
-        let [mut receptance, displacement] = self.model.compliance().effort(self.observed);
-        if let Some(modes) = self.model.compliance().contact_modes() {
+        let [mut receptance, displacement] = self.compliance().effort(self.observed);
+        if let Some(modes) = self.compliance().contact_modes() {
             if self.is_of_many(highest) {
                 receptance = modes.effort();
             }
@@ -74,21 +87,11 @@ impl Effort<'_> {
         count as f64 * (evaluations * receptance + recoveries * displacement)
     }
 
-    /// Points of a law that couples several, in the mean over those of all such laws; 1 if there are none.
-    fn coupled_points(&self) -> f64 {
-        let sizes = || self.model.laws().iter().map(|law| law.displacements() as f64);
-        let coupled = || sizes().filter(|size| *size > 1.0);
-        let points: f64 = coupled().sum();
-        if points > 0.0 {
-            coupled().map(|size| size * size).sum::<f64>() / points
-        } else {
-            1.0
-        }
-    }
-
     /// Whether receptances are not formed.
     fn is_of_many(&self, highest: usize) -> bool {
-        suits(self.model.compliance(), &Harmonics::new(highest, self.half_wave))
+        let compliance = self.compliance();
+        compliance.contact_modes().is_some()
+            && suits(compliance, &Harmonics::new(highest, self.half_wave))
     }
 
     fn slots(&self, highest: usize) -> f64 {
@@ -102,26 +105,35 @@ impl Effort<'_> {
     /// Of the laws without their tangents.
     fn values(&self, highest: usize) -> f64 {
         let slots = self.slots(highest);
-        let (contacts, slipping) =
-            (self.model.compliance().contacts() as f64, self.slipping as f64);
+        let (contacts, slipping) = (self.compliance().contacts() as f64, self.slipping as f64);
         // Every law looks for turning points, unless amplitudes alone show that it sticks, as nearly all
         // of a ring do; one that slips integrates.
-        let looks = if self.model.compliance().ring().is_some() { slipping } else { contacts };
+        let looks = if self.compliance().ring().is_some() { slipping } else { contacts };
         looks * (600.0 + 40.0 * slots) + slipping * (600.0 + 80.0 * slots)
     }
 
     /// Of a Newton step in the harmonics up to `highest`.
     pub(super) fn step(&self, highest: usize) -> f64 {
-        let (compliance, slots) = (self.model.compliance(), self.slots(highest));
+        let (compliance, slots) = (self.compliance(), self.slots(highest));
         let slipping = self.slipping as f64;
         let laws = self.values(highest) + slipping * 2.5 * slots.powi(2);
         let linear = match compliance.ring() {
             Some(ring) => RingNewton::effort(ring, slots, slipping),
-            None if self.is_of_many(highest) => {
-                of_step(compliance, slots, slipping, self.coupled_points())
-            }
+            None if self.is_of_many(highest) => of_step(compliance, slots, slipping, self.coupled),
             None => 1e3 + 100.0 * slipping * slots + 0.06 * (slipping * slots).powi(3),
         };
         laws + linear
+    }
+}
+
+/// Points of a law that couples several, in the mean over those of all such laws; 1 if there are none.
+fn coupled_points(model: &Model) -> f64 {
+    let sizes = || model.laws().iter().map(|law| law.displacements() as f64);
+    let coupled = || sizes().filter(|size| *size > 1.0);
+    let points: f64 = coupled().sum();
+    if points > 0.0 {
+        coupled().map(|size| size * size).sum::<f64>() / points
+    } else {
+        1.0
     }
 }

@@ -67,7 +67,7 @@ impl ForcedBalance<'_> {
         }
         let (half_wave, observed) = (harmonics.half_wave(), self.observe.len());
         let given = self.evaluated(None)?;
-        let effort = Effort { model: &given, half_wave, slipping, observed };
+        let effort = Effort::new(&given, half_wave, slipping, observed);
         // Where harmonics are chosen, every estimate decides by itself. Points of a curve whose frequency is
         // unknown take more than their steps.
         let fixed = self.control.is_fixed();

@@ -25,7 +25,7 @@ fn model() -> Model {
 #[test]
 fn an_extended_balance_reaches_as_far_as_the_steps_of_the_solution_allow() {
     let (model, kept) = (model(), Harmonics::new(1, true));
-    let effort = Effort { model: &model, half_wave: true, slipping: 1, observed: 2 };
+    let effort = Effort::new(&model, true, 1, 2);
     let earned = |steps: usize| {
         let taken = Profile { factorisations: steps, evaluations: 2 * steps, ..Profile::default() };
         effort.earned(1, &taken)

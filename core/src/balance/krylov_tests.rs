@@ -267,7 +267,7 @@ fn estimates_of_coupled_points_reach_less_far() {
     let nodes = model(coulomb(28, 2), Damping::Rayleigh, 0.0);
     let alone = model(jenkins(84), Damping::Rayleigh, 0.0);
     let reach = |model| {
-        let effort = Effort { model, half_wave: false, slipping: 40, observed: 1 };
+        let effort = Effort::new(model, false, 40, 1);
         Extension::new(&effort, &Harmonics::new(3, false), 1.0, f64::INFINITY).highest
     };
     let [nodes, alone] = [&nodes, &alone].map(reach);
