@@ -5,7 +5,6 @@ use super::ring::RingNewton;
 use crate::fourier::Harmonics;
 use crate::model::Model;
 use crate::structure::Compliance;
-use crate::timing::Profile;
 
 /// Effort of an estimate over that of the Newton steps of the solution, both as reckoned, and over that of
 /// its compliances and displacements as long as these are the lesser part; else they cost no more than
@@ -22,6 +21,10 @@ const ALLOWED_OF_COUPLED: f64 = 1.5;
 const ALLOWED_OF_MANY: f64 = 0.25;
 /// The same of many nodes that slip or open, of which nearly all is reckoned.
 const ALLOWED_OF_NODES: f64 = 0.8;
+
+/// Newton steps with a tangent of their own, and evaluations of the laws without, that a solution beside another
+/// one takes on coarse curves. That of another method is judged alike.
+const BESIDE: f64 = 2.5;
 
 /// What Newton steps, compliances and displacements of a solution allow an estimate.
 pub(super) fn allowance(share: f64, steps: f64, orders: f64) -> f64 {
@@ -49,11 +52,9 @@ impl<'a> Effort<'a> {
         self.model.compliance()
     }
 
-    /// What a solution with harmonics up to `highest` allows an estimate on a curve, by the steps that it took.
-    pub(super) fn earned(&self, highest: usize, taken: &Profile) -> f64 {
-        let whole = taken.factorisations.min(taken.evaluations) as f64;
-        let others = taken.evaluations as f64 - whole;
-        let steps = whole * self.step(highest) + others * self.values(highest);
+    /// What a solution with harmonics up to `highest` that starts from its neighbour allows an estimate.
+    pub(super) fn earned(&self, highest: usize) -> f64 {
+        let steps = BESIDE * (self.step(highest) + self.values(highest));
         let mut share = self.allowed([highest, highest]);
         if self.coupled > 1.0 {
             share = share.min(ALLOWED_OF_COUPLED);

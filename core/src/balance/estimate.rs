@@ -71,8 +71,8 @@ impl ForcedBalance<'_> {
         // Where harmonics are chosen, every estimate decides by itself. Points of a curve whose frequency is
         // unknown take more than their steps.
         let fixed = self.control.is_fixed();
-        let steps = solved.filter(|solved| fixed && !solved.slopes).map(|solved| &solved.profile);
-        let earned = steps.map(|steps| effort.earned(harmonics.highest(), steps));
+        let counts = fixed && solved.is_none_or(|solved| !solved.slopes);
+        let earned = counts.then(|| effort.earned(harmonics.highest()));
         let credit = self.neighbour.credit(point, earned);
         let whole = Extension::new(&effort, harmonics, point.omega, credit);
         let follows = whole.has_two() && fixed;
