@@ -36,7 +36,8 @@ pub(super) struct Effort<'a> {
     model: &'a Model,
     half_wave: bool,
     slipping: usize,
-    observed: usize,
+    /// Of a compliance, and of the displacements of the observed degrees of freedom, at one order.
+    of_order: [f64; 2],
     /// Points that a law couples, in the mean.
     coupled: f64,
 }
@@ -45,7 +46,8 @@ impl<'a> Effort<'a> {
     /// Of balances with half-wave symmetry or without, with so many points that slip and so many observed
     /// degrees of freedom.
     pub(super) fn new(model: &'a Model, half_wave: bool, slipping: usize, observed: usize) -> Self {
-        Self { model, half_wave, slipping, observed, coupled: coupled_points(model) }
+        let of_order = model.compliance().effort(observed);
+        Self { model, half_wave, slipping, of_order, coupled: coupled_points(model) }
     }
 
     pub(super) fn compliance(&self) -> &'a dyn Compliance {
@@ -79,7 +81,7 @@ impl<'a> Effort<'a> {
     /// Of so many evaluations of compliances and recoveries of displacements up to an order.
     pub(super) fn orders(&self, highest: usize, [evaluations, recoveries]: [f64; 2]) -> f64 {
         let count = if self.half_wave { highest.div_ceil(2) } else { highest + 1 };
-        let [mut receptance, displacement] = self.compliance().effort(self.observed);
+        let [mut receptance, displacement] = self.of_order;
         if let Some(modes) = self.compliance().contact_modes() {
             if self.is_of_many(highest) {
                 receptance = modes.effort();
