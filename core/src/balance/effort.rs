@@ -54,6 +54,12 @@ impl<'a> Effort<'a> {
         self.model.compliance()
     }
 
+    /// Whether estimates along a curve are held by what its solutions earn: with others the steps of every estimate
+    /// are few enough, and nearly rigid contacts need all orders.
+    pub(super) fn keeps_account(&self) -> bool {
+        self.compliance().ring().is_some() || self.coupled > 1.0
+    }
+
     /// What a solution with harmonics up to `highest` that starts from its neighbour allows an estimate.
     pub(super) fn earned(&self, highest: usize) -> f64 {
         let steps = BESIDE * (self.step(highest) + self.values(highest));

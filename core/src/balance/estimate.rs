@@ -71,7 +71,7 @@ impl ForcedBalance<'_> {
         // Where harmonics are chosen, every estimate decides by itself. Points of a curve whose frequency is
         // unknown take more than their steps.
         let fixed = self.control.is_fixed();
-        let counts = fixed && solved.is_none_or(|solved| !solved.slopes);
+        let counts = fixed && effort.keeps_account() && solved.is_none_or(|solved| !solved.slopes);
         let earned = counts.then(|| effort.earned(harmonics.highest()));
         let credit = self.neighbour.credit(point, earned);
         let whole = Extension::new(&effort, harmonics, point.omega, credit);
