@@ -117,15 +117,8 @@ class Mesh:
         for name, own in [*parts, ("rotated", turned)]:
             if ((own < 0) | (own >= count)).any():
                 raise ModelError(f"mesh: {name} has a node that is not among the {count}")
-        set_fields(
-            self,
-            nodes=places,
-            cells=elements,
-            numbers=known,
-            node_sets=sets,
-            surfaces=faces,
-            rotated=turned,
-        )
+        set_fields(self, nodes=places, cells=elements, numbers=known)
+        set_fields(self, node_sets=sets, surfaces=faces, rotated=turned)
 
     def __repr__(self) -> str:
         named = [*self.surfaces, *self.node_sets]
