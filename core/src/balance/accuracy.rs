@@ -56,7 +56,7 @@ pub(super) enum Steps {
     Two,
 }
 
-/// What an estimate may cost, and costs, in reckoned nanoseconds.
+/// What an estimate costs, in reckoned nanoseconds.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Account {
     /// That of compliances and displacements, with one step.
@@ -205,7 +205,7 @@ pub(super) fn estimate(
             return Ok(None);
         }
         if !extended.solve(&defect, &mut step) {
-            return infinite;
+            return if extended.interrupted() { Ok(None) } else { infinite };
         }
         step.iter_mut().for_each(|s| *s = -*s);
         let mut slip_load = extended.slip_load();

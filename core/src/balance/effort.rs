@@ -12,8 +12,9 @@ use crate::structure::Compliance;
 /// solution from nothing. With less, estimates at low frequencies stop short of the stuck modes, and of
 /// the error.
 const ALLOWED: f64 = 3.0;
-/// The same of a ring, of which nearly all is reckoned.
-const ALLOWED_OF_RING: f64 = 1.0;
+/// The same of a ring, of which nearly all is reckoned, by itself and along a curve. With less by itself, estimates
+/// stop short of upper modes of the sectors.
+const ALLOWED_OF_RING: [f64; 2] = [1.3, 1.0];
 /// The same of laws that couple several displacements, along a curve: more of their motion changes with the
 /// harmonics than is reckoned.
 const ALLOWED_OF_COUPLED: f64 = 1.5;
@@ -63,10 +64,11 @@ impl<'a> Effort<'a> {
     /// What a solution with harmonics up to `highest` that starts from its neighbour allows an estimate.
     pub(super) fn earned(&self, highest: usize) -> f64 {
         let steps = BESIDE * (self.step(highest) + self.values(highest));
-        let mut share = self.allowed([highest, highest]);
-        if self.coupled > 1.0 {
-            share = share.min(ALLOWED_OF_COUPLED);
-        }
+        let share = if self.compliance().ring().is_some() {
+            ALLOWED_OF_RING[1]
+        } else {
+            self.allowed([highest, highest]).min(ALLOWED_OF_COUPLED)
+        };
         allowance(share, steps, self.orders(highest, [1.0, 1.0]))
     }
 
@@ -74,7 +76,7 @@ impl<'a> Effort<'a> {
     pub(super) fn allowed(&self, [highest, order]: [usize; 2]) -> f64 {
         let coupled = self.coupled > 1.0;
         if self.compliance().ring().is_some() {
-            ALLOWED_OF_RING
+            ALLOWED_OF_RING[0]
         } else if coupled && self.is_of_many(order) {
             ALLOWED_OF_NODES
         } else if self.is_of_many(highest) {

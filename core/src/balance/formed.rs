@@ -8,6 +8,27 @@ use super::modal_work::{is_cheaper_formed, may_be_formed};
 use crate::contact::SlipLoad;
 use faer::Mat;
 
+/// Directions that products did not lead to after which a search for the solution is given up.
+const MOST_FAILURES: usize = 8;
+
+/// What products with the modes have led to.
+#[derive(Debug, Default)]
+pub(super) struct ByProducts {
+    /// Products of the last direction.
+    last: usize,
+    /// Directions that they did not lead to.
+    failures: usize,
+    /// Whether dense receptances have taken their place.
+    pub(super) replaced: bool,
+}
+
+impl ByProducts {
+    /// Whether they are given up.
+    pub(super) fn are_lost(&self) -> bool {
+        self.failures >= MOST_FAILURES
+    }
+}
+
 impl Condensed<'_> {
     /// Newton's direction by products with the modes, if they lead to one.
     pub(super) fn solve_by_products(&mut self, rhs: &[f64], step: &mut [f64]) -> bool {
@@ -41,14 +62,29 @@ impl Condensed<'_> {
     }
 
     fn form(&mut self) -> bool {
-        let harmonics = self.table.harmonics();
-        let compliance = self.model.compliance();
-        if !may_be_formed(compliance, harmonics.slots(), self.active_points().len()) {
+        let (slots, slipping) = (self.table.harmonics().slots(), self.active_points().len());
+        if !may_be_formed(self.model.compliance(), slots, slipping) {
             return false;
         }
-        let mut linear = Linear::dense(self.table, self.slopes);
+        self.by_products.replaced = self.take(Linear::dense(self.table, self.slopes));
+        self.by_products.replaced
+    }
+
+    /// Takes products again, where more points have come to slip than a matrix of them may have.
+    pub(super) fn take_products_again(&mut self) {
+        let (slots, slipping) = (self.table.harmonics().slots(), self.active_points().len());
+        let compliance = self.model.compliance();
+        if self.by_products.replaced && !may_be_formed(compliance, slots, slipping) {
+            let products = Linear::new(compliance, self.table, self.slopes);
+            self.by_products.replaced = !self.take(products);
+        }
+    }
+
+    /// Takes another form of the receptances at this frequency; `false` if it has none.
+    fn take(&mut self, mut linear: Linear) -> bool {
         // The response of the stuck structure is known.
         let mut stuck = vec![0.0; self.stuck.len()];
+        let (compliance, harmonics) = (self.model.compliance(), self.table.harmonics());
         if linear.evaluate(compliance, harmonics, self.omega, None, &mut stuck).is_err() {
             return false;
         }

@@ -217,6 +217,7 @@ impl System for Condensed<'_> {
             return true;
         }
         if self.factor.is_none() {
+            self.take_products_again();
             self.factorise();
             self.profile.factorisations += 1;
         }
@@ -241,7 +242,9 @@ impl System for Condensed<'_> {
         }
         self.profile.linear_solve += start.elapsed();
         self.judge_mean(step, norm(rhs));
-        self.form_if_cheaper();
+        if !self.free {
+            self.form_if_cheaper();
+        }
         !self.free && step.iter().all(|s| s.is_finite())
     }
 }
@@ -263,7 +266,9 @@ impl Parametrised for Condensed<'_> {
     /// Whether nothing holds the mean of many contacts in the last direction that was asked for, or products
     /// lead to none and a matrix is too large.
     fn is_lost(&self) -> bool {
-        matches!(self.linear, Linear::Modal(_)) && (self.free || self.by_products.are_lost())
+        let by_products = matches!(self.linear, Linear::Modal(_));
+        let of_many = by_products || self.by_products.replaced;
+        of_many && self.free || by_products && self.by_products.are_lost()
     }
 
     fn easy_start(&self, x: &mut [f64]) {

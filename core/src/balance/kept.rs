@@ -20,8 +20,12 @@ pub fn in_order<T>(points: &mut [Arc<T>], order: &[f64], omega: impl Fn(&T) -> f
     for (place, own) in order.iter().enumerate() {
         places.entry(own.to_bits()).or_default().push_back(place);
     }
-    let mut next = |point: &T| places.get_mut(&omega(point).to_bits())?.pop_front();
-    points.sort_by_cached_key(|point| next(point));
+    let mut place_of = |point: &T| places.get_mut(&omega(point).to_bits())?.pop_front();
+    // One after the other, as they were found: a sort may ask for its keys in any order.
+    let placed = points.iter().map(|point| (place_of(point), Arc::clone(point)));
+    let mut placed: Vec<(Option<usize>, Arc<T>)> = placed.collect();
+    placed.sort_by_key(|(place, _)| place.unwrap_or(usize::MAX));
+    points.iter_mut().zip(placed).for_each(|(to, (_, point))| *to = point);
 }
 
 #[cfg(test)]

@@ -177,6 +177,13 @@ impl Structure {
         self.damping.as_ref()
     }
 
+    /// Whether damping takes energy from every motion.
+    pub(crate) fn is_damped(&self) -> bool {
+        let (size, c) = (self.dofs(), &self.damping);
+        let even = Mat::from_fn(size, size, |i, j| 0.5 * (c[(i, j)] + c[(j, i)]));
+        is_positive(even.as_ref())
+    }
+
     /// Stiffness matrix [N/m], contacts not included.
     #[must_use]
     pub fn stiffness(&self) -> MatRef<'_, f64> {

@@ -273,6 +273,7 @@ impl<'a> March<'a> {
         let mut length = self.first_length(start);
         let mut ended = false;
         let most = MOST_PANELS * self.drive.harmonics().highest().max(4);
+        let mut panels = 0;
         while theta < end && !ended {
             let left = end - theta;
             length = if length >= left { left } else { length.min(0.5 * left) };
@@ -285,7 +286,7 @@ impl<'a> March<'a> {
             };
             let error = panel.error(self.plane, self.resolved);
             let tried = length;
-            if self.stretches.len() > most {
+            if panels > most {
                 self.unresolved = true;
                 return end;
             }
@@ -313,6 +314,7 @@ impl<'a> March<'a> {
             length = panel.wanted;
             let state = State::Turning(Box::new(panel));
             self.stretches.push(Stretch { start: from, end: theta, state });
+            panels += 1;
         }
         if theta > start {
             self.leave(theta, angle, &rate, slider);
