@@ -124,3 +124,22 @@ def test_an_analysis_that_ends_beside_another_takes_nothing_from_it():
     other = balance(model.replaced(contacts=[Forgetful(["x"], k=4e3, limit=1.0)]))
     expected = balance(model.replaced(contacts=[law]))
     np.testing.assert_array_equal(other.amplitude("x"), expected.amplitude("x"))
+
+
+@pytest.mark.parametrize("wrong", [1.0, 1.01])
+def test_rounding_within_a_step_whose_state_passes_zero_is_no_wrong_tangent(wrong):
+    class Passing(Dahl):
+        def step(self, before, after, state):
+            force, new, tangents = super().step(before, after, state)
+            return force, new, ss.Tangents(wrong * tangents.state_by_state, *tangents[1:])
+
+    law = Passing(["x"], k=4e3, limit=1.0)
+    # The limit, in the step, is ten decades above the state.
+    at = {"before": [[1e-6]], "after": [[1e-6 + 1e-11]], "state": [[1e-10]]}
+    at = {name: np.array(value) for name, value in at.items()}
+    answer = law._answer(**at)
+    if wrong == 1.0:
+        contact_answer.compare(law._answer, at, answer, np.array([[4e3]]), "law")
+    else:
+        with pytest.raises(ss.ModelError, match=r"force\[0\] by state\[0\]"):
+            contact_answer.compare(law._answer, at, answer, np.array([[4e3]]), "law")

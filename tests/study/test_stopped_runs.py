@@ -1,5 +1,6 @@
 """Runs of the command that are stopped at any moment, and run again: as if nothing had happened."""
 
+import importlib
 import os
 import random
 import signal
@@ -144,6 +145,26 @@ def test_a_signal_that_comes_during_an_import_is_not_lost(number, tmp_path, monk
         wait()
     assert stop.value.exit_code == CODES[number]
     assert time.monotonic() - started < 10.0
+
+
+def test_a_signal_is_heeded_at_once_where_a_module_that_is_imported_calls(tmp_path, monkeypatch):
+    text = """
+import signal
+import time
+from stickslip.cli.exit_codes import guarded
+
+def wait():
+    signal.raise_signal(signal.SIGTERM)
+    time.sleep(1.0)
+    raise AssertionError("not stopped")
+
+guarded(wait)()
+"""
+    (tmp_path / "calling.py").write_text(text)
+    monkeypatch.syspath_prepend(tmp_path)
+    with pytest.raises(typer.Exit) as stop:
+        importlib.import_module("calling")
+    assert stop.value.exit_code == CODES[signal.SIGTERM]
 
 
 def test_an_error_that_takes_the_place_of_the_signal_is_no_defect():

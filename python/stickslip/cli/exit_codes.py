@@ -90,8 +90,8 @@ def integer(written: object) -> int:
 
 
 def _imports(frame: FrameType | None) -> bool:
-    """Say whether a module is being imported."""
-    while frame is not None:
+    """Say whether the command is importing a module; one that calls it may be imported itself."""
+    while frame is not None and frame.f_code.co_filename != __file__:
         if frame.f_code.co_filename == "<frozen importlib._bootstrap>":
             return True
         frame = frame.f_back
