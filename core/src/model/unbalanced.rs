@@ -33,11 +33,11 @@ pub(super) struct Remainder {
 /// The part of a load that forces do not balance; of forces without bound nothing is left. Zero or not is for the
 /// caller to say, who knows how much friction does along it.
 pub(super) fn remainder(load: &[c64], forces: &[Bounded]) -> Remainder {
-    let unlimited = forces.iter().filter(|force| force.most >= f64::MAX);
-    let beyond = Beyond::of(unlimited.map(|force| force.effect.as_slice()));
-    let load = beyond.without(load);
+    let without_bound = forces.iter().filter(|force| force.most >= f64::MAX);
+    let unlimited = Unlimited::of(without_bound.map(|force| force.effect.as_slice()));
+    let load = unlimited.without(load);
     let limited = forces.iter().filter(|force| force.most < f64::MAX);
-    let lines: Vec<Line> = limited.filter_map(|force| Line::of(force, &beyond)).collect();
+    let lines: Vec<Line> = limited.filter_map(|force| Line::of(force, &unlimited)).collect();
     if lines.is_empty() {
         return Remainder { parts: load, doubt: 0.0 };
     }
@@ -45,9 +45,9 @@ pub(super) fn remainder(load: &[c64], forces: &[Bounded]) -> Remainder {
 }
 
 /// Directions that forces without a bound take.
-struct Beyond(Vec<Vec<c64>>);
+struct Unlimited(Vec<Vec<c64>>);
 
-impl Beyond {
+impl Unlimited {
     fn of<'e>(effects: impl Iterator<Item = &'e [c64]>) -> Self {
         let mut found = Self(Vec::new());
         for effect in effects {
@@ -78,8 +78,8 @@ struct Line {
 }
 
 impl Line {
-    fn of(force: &Bounded, beyond: &Beyond) -> Option<Self> {
-        let effect = beyond.without(&force.effect);
+    fn of(force: &Bounded, unlimited: &Unlimited) -> Option<Self> {
+        let effect = unlimited.without(&force.effect);
         let length = size(&effect);
         let counts = length > NONE * size(&force.effect) && length * force.most > 0.0;
         let unit = || effect.iter().map(|part| part / length).collect();
@@ -125,15 +125,15 @@ fn nearest(load: &[c64], lines: &[Line]) -> Remainder {
     best
 }
 
-/// The remainder that some forces leave. Its distance from the least one squared is no more than what forces at
-/// their bounds do along it beyond these.
+/// The remainder that some forces leave. The square of its distance from the least one is no more than the duality
+/// gap: what forces at their bounds do along it, less what these do.
 fn judged(load: &[c64], lines: &[Line], forces: &[c64]) -> Remainder {
     let parts = left_of(load, lines, forces);
-    let beyond = lines.iter().zip(forces).map(|(line, force)| {
+    let gap = lines.iter().zip(forces).map(|(line, force)| {
         let along = product(&line.unit, &parts);
         line.most * along.norm() - (force.conj() * along).re
     });
-    let doubt = beyond.sum::<f64>().max(0.0).sqrt();
+    let doubt = gap.sum::<f64>().max(0.0).sqrt();
     Remainder { parts, doubt }
 }
 
@@ -172,4 +172,59 @@ pub(super) fn product(a: &[c64], b: &[c64]) -> c64 {
 
 pub(super) fn size(vector: &[c64]) -> f64 {
     vector.iter().map(|part| part.norm_sqr()).sum::<f64>().sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn real(parts: &[f64]) -> Vec<c64> {
+        parts.iter().map(|part| c64::new(*part, 0.0)).collect()
+    }
+
+    fn bounded(effect: &[f64], most: f64) -> Bounded {
+        Bounded { effect: real(effect), most }
+    }
+
+    #[test]
+    fn one_force_takes_off_what_it_may() {
+        let found = remainder(&[c64::new(1.2, 1.6)], &[bounded(&[1.0], 0.5)]);
+        // Against the phase of the load.
+        assert!((found.parts[0] - c64::new(0.9, 1.2)).norm() < 1e-8);
+        assert!(found.doubt <= 1e-7);
+        let none = remainder(&[c64::new(1.2, 1.6)], &[bounded(&[1.0], 2.1)]);
+        assert!(size(&none.parts) <= none.doubt.max(1e-8));
+    }
+
+    #[test]
+    fn of_a_force_without_bound_nothing_is_left_along_it() {
+        let forces = [bounded(&[1.0, 1.0], f64::MAX), bounded(&[1.0, 0.0], 0.5)];
+        let found = remainder(&real(&[3.0, 0.0]), &forces);
+        assert!(product(&real(&[1.0, 1.0]), &found.parts).norm() < 1e-8);
+        // The load across it, (1.5, -1.5), less the half newton that the other one does there.
+        let expected = 1.5 * 2f64.sqrt() - 0.5 / 2f64.sqrt();
+        assert!((size(&found.parts) - expected).abs() < 1e-7);
+    }
+
+    #[test]
+    fn the_least_remainder_is_that_of_a_fine_grid() {
+        let load = real(&[2.0, 1.0]);
+        let forces =
+            [bounded(&[1.0, 0.3], 0.7), bounded(&[-0.2, 1.0], 0.9), bounded(&[1.0, 1.0], 0.2)];
+        let found = remainder(&load, &forces);
+        let steps = 60;
+        let share = |i: i32| 2.0 * f64::from(i) / f64::from(steps) - 1.0;
+        let mut least = f64::INFINITY;
+        for (a, b, c) in (0..=steps)
+            .flat_map(|a| (0..=steps).flat_map(move |b| (0..=steps).map(move |c| (a, b, c))))
+        {
+            let g = [0.7 * share(a), 0.9 * share(b), 0.2 * share(c)];
+            let left: Vec<c64> = (0..2)
+                .map(|i| load[i] - (0..3).map(|k| forces[k].effect[i] * g[k]).sum::<c64>())
+                .collect();
+            least = least.min(size(&left));
+        }
+        assert!(size(&found.parts) <= least + found.doubt);
+        assert!(size(&found.parts) >= least - 0.05, "{least} {:?}", found.parts);
+    }
 }
