@@ -254,7 +254,7 @@ def test_equal_frequencies_far_apart_in_a_structure():
 
 @pytest.mark.parametrize("seed", range(12))
 def test_what_is_unbounded_grows_as_damping_vanishes(seed):
-    """Beside the verdict the balance itself, with a hundred thousandth and a millionth."""
+    """Beside the verdict the balance itself, with a millionth of damping and a tenth of it."""
     rng = np.random.default_rng(seed)
     count = int(rng.integers(2, 6))
     contacts = []
@@ -269,15 +269,14 @@ def test_what_is_unbounded_grows_as_damping_vanishes(seed):
     ]
     found = blades(count, contacts, forces).problem.unbounded(SPAN)
     heights = []
-    for ratio in (1e-5, 1e-6):
+    for ratio in (1e-6, 1e-7):
         damped = blades(count, contacts, forces, ss.ModalDamping(ratio))
         solution = ss.forced_response(damped, [100.0], 3)
         assert solution.converged[0]
         heights.append([solution.amplitude(f"q{i}", "fundamental")[0] for i in range(count)])
-    # Friction that takes nearly all of a load leaves a height that grows late.
     grows = np.array(heights[1]) / np.maximum(heights[0], 1e-6 * np.max(heights))
     for one, growth in zip(found, grows, strict=True):
-        assert growth < 9.0 if one is None else growth > 1.2
+        assert growth < 1.1 if one is None else growth > 9.0
 
 
 def test_a_summary_asks_once_for_all(monkeypatch):
