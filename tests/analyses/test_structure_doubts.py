@@ -51,7 +51,7 @@ def test_percents_taken_for_a_ratio_are_a_caution(name):
     assert list(found) == ["overdamped"]
     assert found["overdamped"].severity is Severity.CAUTION
     assert found["overdamped"].text == (
-        "Damping ratio 2 is 200% of critical, and nothing oscillates; for 2 % give 0.02."
+        "Damping ratio 2 is 200% of critical: such a mode does not oscillate; for 2 % give 0.02."
     )
     assert not doubts(OF_STABLE[name](model(damping=ss.ModalDamping([0.01, 0.99]))))
 
@@ -108,11 +108,37 @@ def test_rigid_bodies_are_not_taken_for_unstable(digits, scale):
     assert structure.unstable_dof is None
 
 
+def free_beam(elements=30, spring=0.0):
+    """Mass and stiffness of a free beam of 1 m, with a spring to ground at its end."""
+    length = 1.0 / elements
+    bend = np.array([[12, 6, -12, 6], [6, 4, -6, 2], [-12, -6, 12, -6], [6, 2, -6, 4]])
+    move = np.array([[156, 22, 54, -13], [22, 4, 13, -3], [54, 13, 156, -22], [-13, -3, -22, 4]])
+    sizes = np.array([1.0, length, 1.0, length])
+    mass, stiffness = np.zeros((2, 2 * elements + 2, 2 * elements + 2))
+    for element in range(elements):
+        at = slice(2 * element, 2 * element + 4)
+        mass[at, at] += length / 420.0 * move * sizes * sizes[:, None]
+        stiffness[at, at] += 100.0 / length**3 * bend * sizes * sizes[:, None]
+    stiffness[-2, -2] += spring
+    return mass, stiffness
+
+
+@pytest.mark.parametrize("modes", [3, 5, 12])
+@pytest.mark.parametrize("ends", [(0, 60), (0, 1), (10, 40)])
+def test_rigid_motions_that_a_reduction_keeps_are_not_taken_for_unstable(ends, modes):
+    reduced = ss.craig_bampton(*free_beam(), dict(zip("ab", ends, strict=True)), modes=modes)
+    structure = reduced.structure()
+    assert structure.unstable_dof is None
+    held = ss.craig_bampton(*free_beam(spring=-1.0), {"a": 0, "b": 60}, modes=modes)
+    assert held.structure().unstable_dof == "b"
+
+
 def test_massless_dofs_and_units_leave_the_judgement_alone():
     turned = np.diag([1e6, 1e-3]) + np.array([[0.0, 20.0], [20.0, 0.0]])
     assert ss.Structure(MASS, turned, None, ["x", "rz"]).unstable_dof is None
     beyond = np.diag([1e6, 1e-3]) + np.array([[0.0, 40.0], [40.0, 0.0]])
-    assert ss.Structure(MASS, beyond, None, ["x", "rz"]).unstable_dof == "rz"
+    fitting = np.diag([1.0, 0.5e-9])
+    assert ss.Structure(fitting, beyond, None, ["x", "rz"]).unstable_dof == "rz"
     assert ss.Structure(np.diag([1.0, 0.0]), beyond, None, ["x", "rz"]).unstable_dof == "rz"
 
 

@@ -114,8 +114,8 @@ TEXTS = {
     "signs and supports, unless it is meant.",
     "phase-unit": "Force {force} at {dof!r} has a phase of {phase:g} rad; for degrees write "
     "'{phase:g} deg'.",
-    "overdamped": "Damping ratio {ratio:g} is {ratio:.0%} of critical, and nothing oscillates; for "
-    "{ratio:g} % give {_percent:g}.",
+    "overdamped": "Damping ratio {ratio:g} is {ratio:.0%} of critical: such a mode does not "
+    "oscillate; for {ratio:g} % give {_percent:g}.",
     "truncation": "{_what} could still change {dof!r} by {share:.1%} at omega = {omega:.6g} rad/s, "
     "the worst point; {_remedy}.",
     "truncation/peak": "The discarded harmonics could still change the peak by {share:.1%} at "
