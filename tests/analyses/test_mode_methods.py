@@ -130,3 +130,12 @@ def test_microslip_that_softens_the_first_amplitude_is_named_with_a_remedy(furth
         why.data["omega"]
     ]
     assert not any("up to 0" in one for one in whole.assumptions)
+
+
+def test_a_free_structure_has_no_static_mode_to_tell_how_much_it_slips():
+    structure = ss.Structure(np.eye(2), [[1e4, -1e4], [-1e4, 1e4]], None, ["x", "y"])
+    joint = ss.Iwan("x", "y", stiffness=1e4, slip_force=1.0, chi=-0.937)
+    lost = ss.nonlinear_modes(ss.Model(structure, [joint]), mode=1, amplitude=[1e-8])
+    (why,) = [one for one in lost.diagnostics if one.severity == "failure"]
+    assert why.code == "mode-not-reached"
+    assert "none found" in repr(lost)

@@ -142,11 +142,11 @@ def _slipping(
     """Say that no mode was found because contacts slip much at the first amplitude already.
 
     The search begins at the linear mode. The quasi-static mode, which begins at the loop of the
-    amplitude, tells how far away that is.
+    amplitude, tells how far away that is; a free structure and a sector of a wave have none.
     """
     end, reached = solution.end
     begun = end != "stalled" or np.isfinite(reached)
-    if begun or settings.method != "periodic" or model.travels:
+    if begun or settings.method != "periodic" or model.travels or model.problem.static_singular:
         return None
     update = {"method": "quasi-static", "amplitudes": settings.amplitudes[:1], "whole": False}
     static = _core.nonlinear_mode(

@@ -54,11 +54,9 @@ class NonlinearModes(PeriodicMotions):
     half_wave: bool
 
     def __repr__(self) -> str:
-        return (
-            f"NonlinearModes({self.omega.size} amplitudes of mode {self.settings.mode}, "
-            f"{np.nanmin(self.omega, initial=np.inf):.6g} to "
-            f"{np.nanmax(self.omega, initial=0.0):.6g} rad/s)"
-        )
+        found = self.omega[np.isfinite(self.omega)]
+        span = f"{found.min():.6g} to {found.max():.6g} rad/s" if found.size else "none found"
+        return f"NonlinearModes({self.omega.size} amplitudes of mode {self.settings.mode}, {span})"
 
     amplitude = Shown[Float]()  # type: ignore[assignment]
     omega = Shown[Float]()
