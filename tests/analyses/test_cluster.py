@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 import stickslip as ss
+from stickslip.analyses import cluster, mistuning_run
+from stickslip.disk.mistuned import tuned_disk
 
 RING = ss.reference.beam_ring(sectors=12, coupling=7e3, engine_order=3)
 KEYS = {"omega": (150.0, 260.0), "patterns": 12, "seed": 1, "harmonics": 1}
@@ -78,3 +80,47 @@ def test_stores_of_other_studies_are_not_merged(tmp_path):
 def test_a_portion_that_is_none_is_refused(portion):
     with pytest.raises(ss.ModelError, match="portion"):
         ss.mistuning_study(RING, 0.05, portion=portion, **KEYS)
+
+
+class Breaking(ss.ContactLaw):
+    """A spring whose code breaks once it is told to."""
+
+    odd = monotone = True
+    broken = False
+
+    def stiffness(self):
+        return [[10.0]]
+
+    def step(self, before, after, state):
+        if Breaking.broken:
+            raise RuntimeError("broken")
+        force = state + 10.0 * (after - before)
+        one = np.ones((1, 1))
+        return force, force, ss.Tangents(one, -10.0 * one, 10.0 * one, one, 0.0 * one)
+
+
+@pytest.mark.parametrize("spread", [False, True])
+def test_laws_of_disks_of_every_coupling_are_heeded(spread, monkeypatch):
+    def breaking(disk):
+        monkeypatch.setattr(Breaking, "broken", True)
+        return tuned_disk(disk)
+
+    def compute_here(_client, compute, work, *_):
+        compute(work.part(slice(1, 2)))
+        return True
+
+    for module in (mistuning_run, cluster):
+        monkeypatch.setattr(module, "tuned_disk", breaking)
+    monkeypatch.setattr(mistuning_run, "compute_on", compute_here)
+    blade = ss.Structure(np.eye(1), [[4e4]], [[4.0]], ["x"])
+    disk = ss.BladedDisk(
+        blade,
+        4,
+        [ss.Coupling("x", stiffness=1e3)],
+        contacts=[Breaking(["x"])],
+        forces=[ss.Force("x", 1.0)],
+        engine_order=1,
+    )
+    keys = KEYS | {"patterns": 1, "coupling_stiffness": [1e3, 2e3]}
+    with pytest.raises(ss.ModelError, match="step raised RuntimeError: broken"):
+        ss.mistuning_study(disk, 0.05, client="here" if spread else None, **keys)

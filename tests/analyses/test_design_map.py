@@ -237,3 +237,39 @@ def test_an_undamped_mode_that_no_damper_sees_ends_its_cells_alone() -> None:
     )
     assert [[str(one) for one in row] for row in found.status] == 2 * [["singular", "converged"]]
     assert (np.isnan(found.amplitude) == [[True, False]]).all()
+
+
+class Failing(ss.ContactLaw):
+    """Sticks, and fails where a spring is stiff."""
+
+    odd = monotone = True
+    state_size = 1
+
+    def __init__(self, *ends, k, **options):
+        super().__init__(*ends, **options)
+        self.k = k
+
+    def stiffness(self):
+        return [[self.k]]
+
+    def step(self, before, after, state):
+        if self.k > 1e3:
+            raise RuntimeError("too stiff")
+        force = state + self.k * (after - before)
+        one = np.ones((1, 1))
+        return force, force, ss.Tangents(one, -self.k * one, self.k * one, one, 0.0 * one)
+
+
+def test_laws_of_all_models_are_heeded():
+    structure = ss.Structure(np.eye(1), [[1e4]], [[2.0]], ["x"])
+    models = []
+
+    def build(k, load):
+        models.append(ss.Model(structure, [Failing(["x"], k=k)], [ss.Force("x", load)]))
+        return models[-1]
+
+    span = {"dof": "x", "omega": (90.0, 120.0), "threads": 1}
+    ss.design_map(build, {"k": [5e2, 1e3], "load": [1.0]}, **span)
+    assert [one.contacts[0]._answers for one in models] == [None, None]
+    with pytest.raises(ss.ModelError, match="step raised RuntimeError: too stiff"):
+        ss.design_map(build, {"k": [1e3, 2e3], "load": [1.0]}, **span)

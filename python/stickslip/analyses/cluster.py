@@ -64,7 +64,7 @@ def computed(batch: Batch) -> tuple[str, list[tuple[int, list[Row], int]]]:
     def keep(index: int, rows: list[_core.Summit], points: int) -> None:
         found.append((batch.numbers[index], [Row(*row) for row in rows], points))
 
-    with refusals(batch.disks[0]):
+    with refusals(*batch.disks):
         _core.mistuning_study(
             [tuned_disk(one) for one in batch.disks],
             batch.which,

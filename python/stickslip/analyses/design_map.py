@@ -110,7 +110,7 @@ def design_map(
         (model.problem, settings.suited(model), model.structure.index(dof)) for model in models
     ]
     with Run("design map", progress) as run:
-        with refusals(models[0]):
+        with refusals(*models):
             found = np.array(_core.peak_map(problems, span, threads or cpu_count() or 1, run))
         shape = tuple(map(len, values))
         columns = [column.reshape(shape) for column in found.T]

@@ -161,7 +161,7 @@ class Work:
         )
         if client is not None:
             return compute_on(client, computed, work, run, deliver)
-        with refusals(self.disk):
+        with refusals(*work.disks):
             return _core.mistuning_study(
                 [tuned_disk(one) for one in work.disks],
                 work.which,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from time import monotonic
 from typing import TypeAlias, TypeVar
@@ -66,19 +66,30 @@ class Run(Interruption):
 
 
 @contextmanager
-def refusals(model: Model) -> Iterator[None]:
-    """Say by the names of the model what the core refuses."""
+def refusals(model: Model, *others: Model) -> Iterator[None]:
+    """Say by the names of the model what the core refuses; heed the laws of all models."""
+    models = model, *others
     try:
-        model.forget_own()
+        _forget_own(models)
         yield
     except ModelError:
         raise
     except ValueError as error:
-        model.raise_own()
+        _raise_own(models)
         raise refusal(error, model) from error
     finally:
+        _forget_own(models)
+    _raise_own(models)
+
+
+def _forget_own(models: Iterable[Model]) -> None:
+    for model in models:
         model.forget_own()
-    model.raise_own()
+
+
+def _raise_own(models: Iterable[Model]) -> None:
+    for model in models:
+        model.raise_own()
 
 
 def share(progress: Progress, start: float, end: float) -> Progress:
