@@ -1,5 +1,7 @@
 """Linear limits of curves under several engine orders."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
@@ -90,3 +92,20 @@ def test_every_stiffness_has_a_stuck_limit_and_all_one_free(ax):
     assert labels[0] == "stuck (linear, each stiffness)"
     assert labels[1].startswith("_")
     assert (labels[2], free.get_color()) == ("free (linear)", style.GREY)
+
+
+def test_limits_of_the_first_result_that_has_some_are_named():
+    beam = snecma_beam()
+    stiffer = ss.Model(beam.structure, [replace(beam.contacts[0], stiffness=1e7)], beam.forces)
+    bare = ss.Model(beam.structure, [], beam.scaled(force=2.0).forces)
+    grid = [160.0, 250.0]
+    point = ss.forced_response(stiffer, [200.0], 1)
+    without, curve = (ss.forced_response(one, grid, 1) for one in (bare, beam))
+    for first, named in (
+        (point, "stuck (linear, each stiffness)"),
+        (without, "stuck (linear)"),
+    ):
+        other = Figure().add_subplot()
+        plot.curves([first, curve], "tip", ax=other)
+        limits = lines(other, style.LIMIT)
+        assert [one.get_label() for one in limits] == [named, "free (linear)"]

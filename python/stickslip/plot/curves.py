@@ -270,6 +270,8 @@ def _draw_limits(
     groups: dict[tuple[Scale, float, object], list[ForcedResponse]] = {}
     first: dict[object, Colour] = {}
     for result, scale, colour in drawn:
+        if not result.model.contacts:
+            continue
         # Every engine order meets the disk at other nodal diameters.
         stiffness = _stiffness(result.model) if stuck else None
         kind = scale, rotor_order(result.model), stiffness
@@ -278,29 +280,29 @@ def _draw_limits(
     orders, values = len({kind[1] for kind in groups}), len({kind[2] for kind in groups})
     differs = ["engine order"] * (orders > 1) + ["stiffness"] * (values > 1)
     each = f", each {' and '.join(differs)}" if differs else ""
-    for number, (kind, results) in enumerate(groups.items()):
-        own = replace(
-            view,
-            omega=kind[0],
-            named=not number,
-            limits=first[kind] if differs else None,
-        )
-        _draw_limit(own, results, each, stuck=stuck)
+    named = True
+    for kind, results in groups.items():
+        limits = first[kind] if differs else None
+        own = replace(view, omega=kind[0], named=named, limits=limits)
+        if _draw_limit(own, results, each, stuck=stuck):
+            named = False
 
 
-def _draw_limit(view: _View, results: Sequence[ForcedResponse], each: str, *, stuck: bool) -> None:
-    """Draw the linear limit of the most strongly forced result."""
+def _draw_limit(view: _View, results: Sequence[ForcedResponse], each: str, *, stuck: bool) -> bool:
+    """Draw the linear limit of the most strongly forced result; return whether there is one."""
     levels = [force_level(result.model) for result in results]
     model = results[int(np.argmax(levels))].model
     omega: Float = np.concatenate([result.omega for result in results])
     low, high = float(omega.min()), float(omega.max())
-    if not model.contacts or low == high or not max(levels):
-        return
+    if low == high or not max(levels):
+        return False
     level = "" if view.per_force or len(set(levels)) == 1 else f", {max(levels):.5g} N"
     if any(contact.slips for contact in model.contacts):
         view.draw_limit(model, (low, high), each + level, stuck=stuck)
-    elif stuck:
+        return True
+    if stuck:
         view.draw_limit(model, (low, high), each + level, stuck=True, name="at rest")
+    return stuck
 
 
 def _stiffness(model: Model) -> object:
