@@ -261,3 +261,19 @@ def test_archives_of_ansys_as_its_reader_reads_them(name):
     assert mesh.node_sets.keys() == theirs.node_components.keys()
     for part, members in theirs.node_components.items():
         assert sorted(mesh.numbers[mesh.node_sets[part]]) == sorted(members)
+
+
+def test_commands_share_lines_and_are_known_by_four_letters(tmp_path):
+    whole = joint()
+    text = whole.replace("ET,        2,185", "ET,2,SOLID185 $ KEYOPT,2,2,3").replace(
+        "BLOCK,", "BLO,"
+    )
+    text = text.replace("NBLO,", "NBLOC,").replace("CMBLO,", "cmblock,")
+    # neither texts nor parameters nor commands of results change nodes
+    texts = "/TITLE, pads $ move\n/COM, lift $ N,R5.3\nMOVE_X=3\nFILL(2,1)=4\n! $ NROTAT\n"
+    text = text.replace("/GO", f"{texts}FILLDATA,2,1,9 $ /GO")
+    for name in ("joint.cdb", "joint.dat"):
+        mesh, other = read(tmp_path, text, name), read(tmp_path, whole, "whole.cdb")
+        np.testing.assert_array_equal(mesh.nodes, other.nodes)
+        np.testing.assert_array_equal(mesh.cells[0][1], other.cells[0][1])
+        assert mesh.node_sets.keys() == other.node_sets.keys()

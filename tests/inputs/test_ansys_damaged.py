@@ -63,13 +63,16 @@ CHANGES = [
     ("        27        28\n", "        25        25\n", "element 20: corners coincide as in no"),
     ("2.0000000000000E+000\n", "2.0000000000000E+0\n", "is cut short"),
     ("2.0000000000000E+000\n", "2.0000000000000Q+000\n", "is no real number"),
-    ("NBLOCK", "NBLOCH", "it has no NBLOCK"),
+    ("NBLOCK", "NBLICK", "it has no NBLOCK"),
     (
         "N,R5.3,LOC,       -1,",
         "N,R5.3,LOC,       99,1.,2.,3.",
         "N: one by one; write it with CDWRITE",
     ),
     ("EXTOPT,ATTR,", "NROTAT,ALL", "NROTAT changes nodes or elements; write it"),
+    ("EXTOPT,ATTR,", "nrot,all", "NROT changes nodes or elements"),
+    ("EXTOPT,ATTR,", "CSYS,5 $ NROTAT,ALL", "NROTAT changes nodes or elements"),
+    ("EXTOPT,ATTR,", "UPGEOM,1,1,1,file,rst", "UPGEOM changes nodes or elements"),
     ("EXTOPT,ATTR,", "nummrg,node", "NUMMRG changes nodes or elements"),
     ("EXTOPT,ATTR,", "TYPE,2\nE,1,2,3,4,5,6,7,8", "E: elements one by one"),
 ]
@@ -100,6 +103,12 @@ def test_archives_in_other_forms_are_refused(tmp_path, text, says):
     with pytest.raises(ss.ModelError) as error:
         read(tmp_path, text)
     assert says in str(error.value)
+
+
+def test_who_may_have_made_a_node_that_is_missing_is_said(tmp_path):
+    text = joint().replace("         5        -8", "         5        -9")
+    with pytest.raises(ss.ModelError, match="before CDWRITE, or it was made by N;"):
+        read(tmp_path, text)
 
 
 def test_ranges_without_end_take_no_room(tmp_path):

@@ -82,13 +82,12 @@ class _Components(Assembly):
 def _members(name: str, what: str, members: Iterable[range], known: Collection[int]) -> list[int]:
     """Return the members of a component, which must all be there."""
     found: list[int] = []
+    advice = "ALLSEL before CDWRITE" + (", or it was made by N" if what == "node" else "")
     for part in members:
         # A damaged range may have more numbers than memory holds: the first unknown one ends it.
         for number in part:
             if number not in known:
-                raise ValueError(
-                    f"component {name}: there is no {what} {number}; ALLSEL before CDWRITE"
-                )
+                raise ValueError(f"component {name}: there is no {what} {number}; {advice}")
             found.append(number)
     return found
 

@@ -18,7 +18,15 @@ _SHORT_HEAD = 5
 """The same where a block is not one of SOLID: number, type, and three more attributes."""
 _MOST = 60
 """Nodes of an element; a damaged count would join the elements that follow."""
-_ARCHIVE = re.compile(r"^[ \t]*(?:NBLOCK|N,(?:R5|UNBL))", re.I | re.M)
+_ARCHIVE = re.compile(
+    r"^[ \t]*(?:NBLO[A-Z]*[ \t]*,[^\n]*\n[ \t]*\(|N,(?:R5\.[0-9]|UNBL)[^,\n]*,[ \t]*LOC)",
+    re.I | re.M,
+)
+"""A block with the format of its lines: other programs name sets as they like."""
+_NAME = 4
+"""Characters by which commands are known."""
+_TEXTS = ("/COM", "C***", "/TIT", "/STI")
+"""Commands that take the rest of a line as it is."""
 
 
 @dataclass
@@ -50,9 +58,10 @@ def parse_archive(text: str) -> Archive:
     """
     reader = _Reader(text.split("\n"))
     for line in reader:
-        words = [word.strip() for word in line.partition("!")[0].split(",")]
         try:
-            reader.take(words[0].upper(), words)
+            for one in _commands(line):
+                words = [word.strip() for word in one.split(",")]
+                reader.take(words[0].upper(), words)
         except ValueError as error:
             # That in which it was found: within a block not the line of the command.
             raise ValueError(f"line {reader.number}: {error}") from error
@@ -127,8 +136,10 @@ class _Reader:
 
     def take(self, command: str, words: list[str]) -> None:
         """Take over a command with the lines that belong to it."""
-        if command in _COMMANDS:
-            _COMMANDS[command](self, [*words, *[""] * 8])
+        act = _COMMANDS.get(command[:_NAME])
+        # Parameters may have names that begin alike: MOVE_X=3, FILL(2)=1.
+        if act and command.lstrip("*/").isalnum() and command not in _OTHERS:
+            act(self, [*words, *[""] * 8])
 
     def value(self, word: str) -> int | None:
         """Return a whole number, written as such or by a parameter; None: neither."""
@@ -287,6 +298,12 @@ class _Limits:
             raise ValueError(f"the block of {self.what}s does not end; the file was cut short")
 
 
+def _commands(line: str) -> list[str]:
+    """Return the commands of a line, without what a ! makes a comment."""
+    said = line.partition("!")[0]
+    return [said] if said.strip().upper().startswith(_TEXTS) else said.split("$")
+
+
 def _count(word: str) -> int | None:
     return whole_field(word) if word else None
 
@@ -307,15 +324,19 @@ def _members(name: str, numbers: list[int]) -> list[range]:
 _COMMANDS = {
     "*SET": _Reader.set,
     "ET": _Reader.element_type,
-    "ETBLOCK": _Reader.element_types,
+    "ETBL": _Reader.element_types,
     "TYPE": _Reader.current_type,
-    "NBLOCK": _Reader.nodes,
-    "EBLOCK": _Reader.elements,
-    "CMBLOCK": _Reader.component,
+    "NBLO": _Reader.nodes,
+    "EBLO": _Reader.elements,
+    "CMBL": _Reader.component,
     "N": _Reader.one_node,
     "E": _Reader.one_element,
     "EN": _Reader.one_element,
-    **dict.fromkeys(("NROTAT", "NANG", "NORA", "NORL", "NMODIF", "NSCALE"), _Reader.change),
-    **dict.fromkeys(("NUMMRG", "NUMCMP", "NGEN", "EGEN", "NSYM", "ESYM"), _Reader.change),
-    **dict.fromkeys(("NDELE", "EDELE", "EMODIF", "ENGEN"), _Reader.change),
+    **dict.fromkeys(("NROT", "NANG", "NORA", "NORL", "NMOD", "NSCA"), _Reader.change),
+    **dict.fromkeys(("NUMM", "NUMC", "NGEN", "EGEN", "NSYM", "ESYM"), _Reader.change),
+    **dict.fromkeys(("NDEL", "EDEL", "EMOD", "ENGE"), _Reader.change),
+    **dict.fromkeys(("FILL", "MOVE", "UPCO", "UPGE", "TRAN"), _Reader.change),
 }
+"""What is done at each command, by the characters that tell it from others."""
+_OTHERS = ("FILLDATA",)
+"""Commands that begin as one of these, and act on results."""
