@@ -16,6 +16,9 @@ from stickslip.io.curve import read_curve
         "20.5,0.0012\n21.5,-1.3E-3\n",
         "20.5, 0.0012,\n21.5, -1.3E-3,\n",
         "20.5;0.0012;\n21.5;-1.3E-3;\n",
+        "20.5, 0.0012;\n21.5, -1.3E-3;\n",
+        "20.5 0.0012,\n21.5 -1.3E-3,\n",
+        "20.5;0.0012,\n21.5;-1.3E-3; \n",
         "20.5\t0.0012 # here\n21.5\t-1.3E-3\n",
         "2.05D1 0.0012\n\n2.15+1 -1.3-3\n",
         # a comma is a decimal point where something else separates the fields
@@ -40,6 +43,12 @@ def test_columns(tmp_path, text):
         ("1;;3\n1;2;3\n", "line 1: an empty field"),
         (",1,2\n3,4,5\n", "line 1: an empty field"),
         ("1.000,5;2\n", "line 1: '1.000,5' has a comma beside a point"),
+        # a first line of numbers is no heading, whatever stands behind them
+        ("20,0.001 first\n30,0.002\n", "line 1: '20,0.001' has a comma beside a point"),
+        ("20,5;0,0012 m\n21,5;0,0013 m\n", "line 1: '0.0012 m' is no"),
+        # a decimal comma is none between fields where the second one is missing
+        ("20,5;0,0012\n21,5;\n", "line 2: 1 number"),
+        ("20,5;\n21,5;0,0012\n", "line 1: 1 number"),
         ("1;2\n1,000,5;2\n", "line 2: '1,000,5' has a comma beside a point"),
     ],
 )
@@ -116,7 +125,7 @@ def universal(path, units=None, **labels):
 
 
 @pytest.mark.parametrize("units", [None, (1, 1.0, 1.0), (9, 1.0, 1.0)])
-@pytest.mark.parametrize("label", ["", "NONE", "m/s^2", "(m/s2)/N"])
+@pytest.mark.parametrize("label", ["", "NONE", "m/s^2", "(m/s2)/N", "accel in m/s^2"])
 def test_functions_in_si_units_are_read(tmp_path, units, label):
     path = universal(tmp_path / "a.uff", units, ordinate_axis_units_lab=label)
     (frf,) = ss.read_frf(path)
@@ -130,6 +139,9 @@ def test_functions_in_si_units_are_read(tmp_path, units, label):
         ((7, 39.37, 0.2248), {}, "code 7"),
         (None, {"ordinate_axis_units_lab": "mm/s^2"}, "its response is in 'mm/s^2'"),
         (None, {"ordinate_axis_units_lab": "g"}, "its response is in 'g'"),
+        (None, {"ordinate_axis_units_lab": "in/s^2"}, "its response is in 'in/s^2'"),
+        (None, {"ordinate_axis_units_lab": "accel (in/s^2)"}, "its response is in 'accel"),
+        (None, {"ordinate_axis_units_lab": "accel in in/s^2"}, "its response is in 'accel"),
         (None, {"orddenom_axis_units_lab": "lbf"}, "its force is in 'lbf'"),
     ],
 )

@@ -13,8 +13,8 @@ from stickslip.errors import ModelError
 from stickslip.io.numbers import real_field
 from stickslip.io.source import readable
 
-_WORDS_OF_HEADS = re.compile(r"[^-+.,;0-9eEdD\s]")
-"""What a line before the first number has, and none of numbers."""
+_ENDS = ",; \t"
+"""What may stand behind the last field."""
 _WORDS = {2: "two numbers", 3: "three numbers"}
 
 
@@ -57,7 +57,7 @@ def read_curve(path: str | PathLike[str], columns: int = 2) -> tuple[NDArray[np.
                 raise ValueError("an empty field")
             rows.append([_number(field) for field in fields[:columns]])
         except ValueError as error:
-            if rows or (len(fields) >= columns and not _WORDS_OF_HEADS.search(line)):
+            if rows or not _is_heading(line, columns):
                 raise ModelError(
                     f"{file}: line {number}: {error}; give {_WORDS[columns]} per line"
                 ) from None
@@ -68,13 +68,27 @@ def read_curve(path: str | PathLike[str], columns: int = 2) -> tuple[NDArray[np.
 
 def _fields(line: str) -> list[str]:
     """Return the fields of a line; commas in them are decimal points."""
-    if ";" in line:
-        fields = line.rstrip(";").split(";")
-    elif "," in line and (re.search(r",\s|\s,|,$", line) or len(line.split()) == 1):
-        fields = line.rstrip(",").split(",")
+    body = line.rstrip(_ENDS)
+    # What is left of 20,5; is one number whose neighbour is missing.
+    alone = len(body.split()) == 1 and ";" not in line
+    if ";" in body:
+        fields = body.split(";")
+    elif "," in body and (alone or re.search(r",\s|\s,", body)):
+        fields = body.split(",")
     else:
-        fields = line.split()
+        fields = body.split()
     return [field.strip() for field in fields]
+
+
+def _is_heading(line: str, columns: int) -> bool:
+    """Return whether a line before the first number begins with something else than numbers."""
+    words = re.split(r"[,;\s]+", line.strip(_ENDS))[:columns]
+    try:
+        for word in words:
+            real_field(word)
+    except ValueError:
+        return True
+    return len(words) < columns
 
 
 def _number(field: str) -> float:

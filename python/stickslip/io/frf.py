@@ -39,6 +39,8 @@ _OTHER_UNITS = {
     *("kn", "mn", "lbf", "lb", "kgf", "kp"),
 }
 """Units of labels that are none of SI, in small letters."""
+_GIVEN_IN = re.compile(r"\bin\b(?=[\s(\[]+[mn]\b)")
+"""The word before a unit: accel in m/s^2."""
 _END, _TEXT, _HEAD = b"    -1", b"    58", 13
 """What ends and begins a dataset, what text says of itself, and its lines before the numbers."""
 _NUMBERS = re.compile(rb"[-+.0-9eEdD \t]*")
@@ -235,7 +237,7 @@ def _frf(dataset: Mapping[str, object]) -> Frf:
         raise ValueError("a response per something else than force")
     for axis, what in (("ordinate", "response"), ("orddenom", "force")):
         label = str(dataset.get(f"{axis}_axis_units_lab", "")).strip()
-        if not _OTHER_UNITS.isdisjoint(re.split(r"[^a-zµ]+", label.lower())):
+        if not _OTHER_UNITS.isdisjoint(re.split(r"[^a-zµ]+", _GIVEN_IN.sub("", label.lower()))):
             raise ValueError(f"its {what} is in {label[:20]!r}; export it in m, s and N")
     quantity = _QUANTITIES.get(int(str(dataset["ordinate_spec_data_type"])))
     if quantity is None:
