@@ -55,6 +55,14 @@ def test_other_forms_of_the_same(tmp_path, old, new, name):
     assert pair.area == pytest.approx(6.0)
 
 
+def test_wide_fields_on_one_line(tmp_path):
+    text = SOUND.replace("BEGIN BULK", "BEGIN BULK\nGRDSET*,,0")
+    text = text.replace(GRID, f"GRID*{22:19d}{'':16}{2.0:16.9E}{0.5:16.9E}")
+    mesh = read(tmp_path, text)
+    assert mesh.nodes[mesh.numbers == 22].tolist() == [[2.0, 0.5, 0.0]]
+    assert len(mesh.nodes) == 16
+
+
 def test_included_files(tmp_path):
     head, _, rest = SOUND.partition("GRID          21")
     (tmp_path / "upper, part.inc").write_text(f"GRID          21{rest}")

@@ -183,3 +183,18 @@ def test_a_spoilt_entry_of_nastran_is_refused(tmp_path, entry):
     path.write_text(bulk_data(False).replace("SET1,1,15,THRU,18", entry))
     with pytest.raises(ss.ModelError, match=r"joint\.bdf"):
         ss.read_mesh(path)
+
+
+@pytest.mark.parametrize("name", ["NBLOCKS", "NBLOCK"])
+def test_sets_of_a_deck_may_have_names_of_other_programs(tmp_path, name):
+    text = DECK.replace("NSET=FEET", f"NSET={name}").replace("FEET, 31", f"{name}, 31")
+    own, other = ss.read_mesh(deck(tmp_path)), ss.read_mesh(deck(tmp_path, text))
+    np.testing.assert_array_equal(other.node_sets[name], own.node_sets["FEET"])
+    np.testing.assert_array_equal(other.node_sets["ENDS"], own.node_sets["ENDS"])
+
+
+@pytest.mark.parametrize("words", ["SKIN", "15,THRU,18,EXCEPT,16", "15,thru,18,by,2"])
+def test_a_set_said_in_other_words_is_left_out(tmp_path, words):
+    path = tmp_path / "joint.bdf"
+    path.write_text(bulk_data(False).replace("SET1,1,15,THRU,18", f"SET1,1,15\nSET1,1,{words}"))
+    assert sorted(ss.read_mesh(path).node_sets) == ["SET1 2"]

@@ -28,6 +28,10 @@ _SHELLS: dict[str, tuple[str, int, list[int]]] = {
     "CQUAD8": ("quad", 4, [*range(4)]),
 }
 _KINDS = _SOLIDS | _SHELLS
+_MOST = 6
+"""Fields of a grid point that are read; blank ones at the end need not be written."""
+_OTHER_WORDS = {"SKIN", "EXCEPT", "BY"}
+"""Words of sets that no THRU stands for."""
 
 
 @dataclass
@@ -44,23 +48,29 @@ class _Bulk:
     known: set[int] = field(default_factory=set)
     """Numbers of the elements."""
     sets: dict[str, list[range]] = field(default_factory=dict)
+    unread: set[str] = field(default_factory=set)
+    """Sets whose members are said in other words."""
 
     def take(self, card: Card) -> None:
         """Take over a card."""
         if card.name == "GRID":
             self._grid(card.fields)
         elif card.name == "GRDSET":
-            _, cp, _, _, _, cd, *_ = card.fields
+            _, cp, _, _, _, cd, *_ = *card.fields, *[""] * _MOST
             self.default = cp, cd
         elif card.name == "SET1":
             number, *words = card.fields
-            own = self.sets.setdefault(f"SET1 {whole_field(number)}", [])
+            name = f"SET1 {whole_field(number)}"
+            if not _OTHER_WORDS.isdisjoint(map(str.upper, words)):
+                self.unread.add(name)
+                return
+            own = self.sets.setdefault(name, [])
             own.extend(_members([one for one in words if one]))
         else:
             self._element(card.name, card.fields)
 
     def _grid(self, fields: list[str]) -> None:
-        number, (_, *words) = whole_field(fields[0]), fields
+        number, (_, *words) = whole_field(fields[0]), [*fields, *[""] * _MOST]
         place = tuple(real_field(one) if one else 0.0 for one in words[1:4])
         systems = words[0], words[4]
         if self.places.get(number, place) != place or self.systems.get(number, systems) != systems:
@@ -104,13 +114,15 @@ class _Bulk:
             yield from with_middles(kind, table[:, 0], table[:, 1 : 1 + corners], middles)
 
     def _sets(self, made: Assembly) -> dict[str, list[int]]:
-        """Return the sets by the positions of their nodes; of elements they are none."""
+        """Return the sets by the positions of their nodes; those of elements are left out."""
         place = made.position
         # A range may name more numbers than memory holds; one longer than the nodes has others.
         return {
             name: [place[one] for part in own for one in part]
             for name, own in self.sets.items()
-            if own and all(len(part) <= len(place) and place.keys() >= set(part) for part in own)
+            if own
+            and name not in self.unread
+            and all(len(part) <= len(place) and place.keys() >= set(part) for part in own)
         }
 
 
