@@ -54,7 +54,7 @@ _SOLID = re.compile("(VTK_LAGRANGE_)?(tetra|pyramid|wedge|hexahedron)", re.I)
 def outside(cells: Sequence[tuple[str, Places]], points: Matrix) -> list[Places]:
     """Return the faces that belong to one solid element only, and the shells on no solid.
 
-    A shell on the face of a solid, its skin, would count the area of the face twice.
+    A shell on the face of a solid, with the same corners, would count the area of the face twice.
     """
     strange = next((kind for kind, _ in cells if _SOLID.match(kind) and kind not in KINDS), None)
     if strange is not None:
