@@ -11,6 +11,7 @@ import pytest
 from scipy import stats
 
 import stickslip as ss
+from stickslip.results.expansion import fit_expansion
 
 BEAM = ss.reference.snecma_beam()
 SPAN = (100.0, 300.0)
@@ -288,3 +289,15 @@ def test_numbers_and_parameters_that_are_none_are_refused(study):
 def test_figures_say_how_many_failed(study):
     ax = study.plot_distribution("amplitude")
     assert ax.get_title() == "12 samples"
+
+
+def test_values_whose_mean_is_zero_to_the_last_digit_have_an_expansion():
+    """The selection of products had ended at once, by chance in one of many studies."""
+    draw = np.random.default_rng(0).uniform(0.0, 1.0, (48, 3))
+    parameters = np.stack((draw, -draw), axis=1).reshape(-1, 3)
+    a, b, c = parameters.T
+    values = np.sin(2.0 * a) + 0.3 * b * c**2
+    assert values.mean() == 0.0
+    found = fit_expansion(["a", "b", "c"], [stats.uniform(-1.0, 2.0)] * 3, parameters, values)
+    assert len(found.degrees) > 3
+    assert found.cross_validation < 1e-3

@@ -1,9 +1,8 @@
 //! The condensed equations at one frequency: `R(U) = U − μ U^stuck − G Q(U)`.
 
 use super::evaluation::Evaluated;
-use super::formed::ByProducts;
 use super::linear::{Factor, Linear};
-use super::modal_work::is_large;
+use super::modal_work::{is_large, ByProducts};
 use super::solution::{Point, PointStatus};
 use super::unknowns::gather;
 use crate::contact::{ContactLaw, Motion, PointSummary, Residual, SlipLoad};

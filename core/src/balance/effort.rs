@@ -15,9 +15,6 @@ const ALLOWED: f64 = 3.0;
 /// The same of a ring, of which nearly all is reckoned, by itself and along a curve. With less by itself, estimates
 /// stop short of upper modes of the sectors.
 const ALLOWED_OF_RING: [f64; 2] = [1.3, 1.0];
-/// The same of laws that couple several displacements, along a curve: more of their motion changes with the
-/// harmonics than is reckoned.
-const ALLOWED_OF_COUPLED: f64 = 1.5;
 /// The same of many contacts, whose products with the modes are reckoned as they are.
 const ALLOWED_OF_MANY: f64 = 0.25;
 /// The same of many nodes that slip or open, of which nearly all is reckoned.
@@ -56,20 +53,15 @@ impl<'a> Effort<'a> {
     }
 
     /// Whether estimates along a curve are held by what its solutions earn: with others the steps of every estimate
-    /// are few enough, and nearly rigid contacts need all orders.
+    /// are few enough, but nearly rigid contacts and those in a plane need all orders, or a second step.
     pub(super) fn keeps_account(&self) -> bool {
-        self.compliance().ring().is_some() || self.coupled > 1.0
+        self.compliance().ring().is_some()
     }
 
     /// What a solution with harmonics up to `highest` that starts from its neighbour allows an estimate.
     pub(super) fn earned(&self, highest: usize) -> f64 {
         let steps = BESIDE * (self.step(highest) + self.values(highest));
-        let share = if self.compliance().ring().is_some() {
-            ALLOWED_OF_RING[1]
-        } else {
-            self.allowed([highest, highest]).min(ALLOWED_OF_COUPLED)
-        };
-        allowance(share, steps, self.orders(highest, [1.0, 1.0]))
+        allowance(ALLOWED_OF_RING[1], steps, self.orders(highest, [1.0, 1.0]))
     }
 
     /// Effort of an estimate up to the last order over that of the steps of the solution up to the first.

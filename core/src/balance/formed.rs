@@ -8,27 +8,6 @@ use super::modal_work::{is_cheaper_formed, may_be_formed};
 use crate::contact::SlipLoad;
 use faer::Mat;
 
-/// Directions that products did not lead to after which a search for the solution is given up.
-const MOST_FAILURES: usize = 8;
-
-/// What products with the modes have led to.
-#[derive(Debug, Default)]
-pub(super) struct ByProducts {
-    /// Products of the last direction.
-    last: usize,
-    /// Directions that they did not lead to.
-    failures: usize,
-    /// Whether dense receptances have taken their place.
-    pub(super) replaced: bool,
-}
-
-impl ByProducts {
-    /// Whether they are given up.
-    pub(super) fn are_lost(&self) -> bool {
-        self.failures >= MOST_FAILURES
-    }
-}
-
 impl Condensed<'_> {
     /// Newton's direction by products with the modes, if they lead to one.
     pub(super) fn solve_by_products(&mut self, rhs: &[f64], step: &mut [f64]) -> bool {

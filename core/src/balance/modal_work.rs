@@ -77,3 +77,24 @@ pub(super) fn is_cheaper_formed(
     let product = modes.work(slipping, slots) + ORTHOGONALISED * slots * slipping;
     WORTH * products as f64 * product > formed + factored
 }
+
+/// Directions that products did not lead to after which a search for the solution is given up.
+const MOST_FAILURES: usize = 8;
+
+/// What products with the modes have led to.
+#[derive(Debug, Default)]
+pub(super) struct ByProducts {
+    /// Products of the last direction.
+    pub(super) last: usize,
+    /// Directions that they did not lead to.
+    pub(super) failures: usize,
+    /// Whether dense receptances have taken their place.
+    pub(super) replaced: bool,
+}
+
+impl ByProducts {
+    /// Whether they are given up.
+    pub(super) fn are_lost(&self) -> bool {
+        self.failures >= MOST_FAILURES
+    }
+}

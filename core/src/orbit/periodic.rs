@@ -140,6 +140,16 @@ impl<'a> PeriodicOrbits<'a> {
         self.plan.half_wave
     }
 
+    /// Passes along the orbit that closes at the unknowns `y` and reads it off.
+    fn read(&mut self, shooting: &mut Shooting<'_>, omega: f64, y: &[f64]) -> Reading {
+        let start = std::time::Instant::now();
+        let empty = self.empty(omega, PointStatus::Converged);
+        let (settings, quadrature) = (&self.plan.settings, &mut self.quadrature);
+        let read = empty.read(shooting, y, settings, self.plan.observe, quadrature);
+        self.profile.recovery += start.elapsed();
+        Reading::of(shooting, y, read)
+    }
+
     /// A point that has not been computed.
     pub(super) fn empty(&self, omega: f64, status: PointStatus) -> Orbit {
         let observed = self.plan.observe.len();

@@ -1,9 +1,7 @@
 //! Whether an orbit closes, and what a pass along it tells.
 
 use super::closed::Orbit;
-use super::periodic::PeriodicOrbits;
 use super::shooting::Shooting;
-use crate::balance::PointStatus;
 use crate::solve::{norm, System as _};
 
 /// What a pass along an orbit tells.
@@ -17,26 +15,20 @@ pub(super) struct Reading {
     pub(super) left: Option<Vec<f64>>,
 }
 
-impl PeriodicOrbits<'_> {
-    /// Passes along the orbit that closes at the unknowns `y` and reads it off.
-    pub(super) fn read(&mut self, shooting: &mut Shooting<'_>, omega: f64, y: &[f64]) -> Reading {
-        let start = std::time::Instant::now();
-        let empty = self.empty(omega, PointStatus::Converged);
-        let (settings, quadrature) = (&self.plan.settings, &mut self.quadrature);
-        let (orbit, touches) = empty.read(shooting, y, settings, self.plan.observe, quadrature);
-        self.profile.recovery += start.elapsed();
+impl Reading {
+    /// Of an orbit that a pass has read off at the unknowns `y`.
+    pub(super) fn of(
+        shooting: &mut Shooting<'_>,
+        y: &[f64],
+        (orbit, touches): (Orbit, bool),
+    ) -> Self {
         let (closing, residual) = misses(shooting, y);
         let size = norm(y).max(f64::MIN_POSITIVE);
         let mut left = vec![0.0; y.len()];
         let determined =
             residual.iter().all(|r| r.is_finite()) && shooting.solve(&residual, &mut left);
-        Reading {
-            orbit,
-            touches,
-            closing,
-            error: norm(&left) / size,
-            left: determined.then_some(left),
-        }
+        let error = norm(&left) / size;
+        Self { orbit, touches, closing, error, left: determined.then_some(left) }
     }
 }
 

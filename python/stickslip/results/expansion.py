@@ -318,7 +318,8 @@ def _selected(
     margins = [ot.Uniform(-1.0, 1.0) if one.bounded else ot.Normal() for one in germs]
     algorithm = ot.FunctionalChaosAlgorithm(
         ot.Sample(points),
-        ot.Sample(((values - values.mean()) / scale)[:, np.newaxis]),
+        # Its selection ends at once where the mean is zero to the last digit.
+        ot.Sample(((values - values.mean()) / scale + 1e-9)[:, np.newaxis]),
         ot.JointDistribution(margins),
         ot.FixedStrategy(ot.OrthogonalProductPolynomialFactory(families, rule), size),
         ot.LeastSquaresStrategy(
