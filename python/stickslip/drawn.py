@@ -1,7 +1,7 @@
 """Functions that draw, as methods of what they draw.
 
-`stickslip.plot` stands above the results and needs Matplotlib: it is loaded when something is
-drawn.
+`stickslip.plot` and `stickslip.views` stand above the results and need Matplotlib and Rich: they
+are loaded when something is drawn.
 """
 
 from __future__ import annotations
@@ -33,7 +33,8 @@ class InNotebooks:
     """A result, of which notebooks show the tables."""
 
     def _repr_html_(self) -> str | None:
-        shown: str | None = import_module("stickslip.views.notebook").html_of(self)
+        views = import_module(f"{__package__}.views.notebook")
+        shown: str | None = views.html_of(self)
         return shown
 
 
