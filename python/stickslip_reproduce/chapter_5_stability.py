@@ -7,6 +7,7 @@ from functools import cache
 import numpy as np
 
 import stickslip as ss
+from stickslip.results.arrays import Float
 from stickslip.results.motion_class import Line
 from stickslip_reproduce import errata
 from stickslip_reproduce.curves import DAMPER
@@ -226,19 +227,28 @@ def _history(dof: str) -> Numbers:
     omega = float(cycles.omega[place])
     count = int(PERIODS * 2.0 * np.pi / omega / motion.step) + 1
     angle = omega * motion.step * np.arange(count)
-    tip = motion.tail[:count, motion.dofs.index("tip")]
     orbit = cycles.coefficients(dof)[place]
-    # Shifted in time so that the fundamentals of the tip are in phase.
-    behind = np.angle(np.exp(-1j * angle) @ tip) - np.angle(cycles.coefficients("tip")[place, 1])
-    turns = np.outer(angle + behind, np.arange(orbit.size))
-    predicted = (np.exp(1j * turns) @ orbit).real
-    followed = motion.tail[:count, motion.dofs.index(dof)]
+
+    def beside(first: int) -> tuple[Float, Float]:
+        """Return some periods of the motion, and the orbit, with the tip in phase."""
+        followed = motion.tail[first : first + count]
+        tip = np.exp(-1j * angle) @ followed[:, motion.dofs.index("tip")]
+        behind = np.angle(tip) - np.angle(cycles.coefficients("tip")[place, 1])
+        turns = np.outer(angle + behind, np.arange(orbit.size))
+        return followed[:, motion.dofs.index(dof)], (np.exp(1j * turns) @ orbit).real
+
+    def difference(first: int) -> float:
+        own, orbit = beside(first)
+        return float(np.sqrt(np.mean((own - orbit) ** 2) / np.mean(orbit**2)))
+
+    followed, predicted = beside(0)
+    # Rounding decides where in its wandering three periods fall: a mean of all of them.
+    error = np.mean([difference(k) for k in range(0, len(motion.tail) - count + 1, count)])
     periods = angle / (2.0 * np.pi)
     series = (
         Series("limit cycle of mode 1, 15 harmonics", periods, predicted, "limit"),
         Series("time integration", periods, followed),
     )
-    error = np.sqrt(np.mean((followed - predicted) ** 2) / np.mean(predicted**2))
     facts: tuple[Fact, ...] = (
         Fact("difference over the limit cycle, mean squares", 100.0 * float(error), "%"),
         Fact("amplitude of the limit cycle", float(cycles.amplitude(dof)[place]), "m"),

@@ -146,7 +146,8 @@ def _compute(study: Study, out: Path, clock: Clock, *, quiet: bool) -> list[Resu
                     with suppress(ModelError, OSError):
                         if part.is_file() and load(part).interrupted:
                             part.unlink()
-                watch.heed()
+            # Before, a signal is heeded where the next curve is kept as far as it went.
+            watch.heed()
         except Interrupted as stop:
             complain("interrupted", "saving what was computed")
             case, result = cases[len(computed)], cast("Result", stop.result)
