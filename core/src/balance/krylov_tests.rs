@@ -11,7 +11,7 @@ use crate::contact::{
 };
 use crate::fourier::{Harmonics, SampleTable};
 use crate::model::{Contact, Model};
-use crate::solve::{newton, NewtonSettings, Outcome, System as _};
+use crate::solve::{newton, NewtonSettings, Outcome, Parametrised as _, System as _};
 use crate::structure::{HarmonicLoad, Structure};
 use faer::{c64, Mat};
 
@@ -258,6 +258,77 @@ fn a_direction_ends_with_the_analysis() {
     assert_eq!(report.outcome, Outcome::Interrupted);
     // Once before the first step, then product by product.
     assert!(asked.get() <= 7 && report.iterations == 1, "{} {report:?}", asked.get());
+}
+
+/// The direction at a multiple of the stuck motion.
+fn direction(equations: &mut Condensed<'_>, factor: f64) -> (bool, Vec<f64>) {
+    let x: Vec<f64> = equations.stuck_response().iter().map(|x| factor * x).collect();
+    let (mut residual, mut step) = (vec![0.0; x.len()], vec![0.0; x.len()]);
+    equations.residual(&x, &mut residual);
+    let found = equations.solve(&residual, &mut step);
+    (found, step)
+}
+
+#[test]
+fn a_matrix_that_has_grown_too_large_gives_way_to_products_again() {
+    let model = model(jenkins(130), Damping::Mass, 0.0);
+    let table = SampleTable::new(Harmonics::new(15, true));
+    let equations = || {
+        let mut equations = Condensed::new(&model, &table, Residual::Centred, false);
+        // Directions are those of Newton, not as inexact as far from a solution.
+        equations.fine = true;
+        equations.set_omega(9.0).unwrap();
+        equations
+    };
+    let (mut formed, mut products) = (equations(), equations());
+    let (found, few) = direction(&mut formed, 1.0);
+    assert!(found && formed.form_instead() && matches!(formed.linear, Linear::Dense(_)));
+    let (found, same) = direction(&mut formed, 1.0);
+    assert!(found && matches!(formed.linear, Linear::Dense(_)));
+    // All slip: 2080 unknowns.
+    let (found, many) = direction(&mut formed, 1e4);
+    assert!(found && matches!(formed.linear, Linear::Modal(_)));
+    let (found, expected) = direction(&mut products, 1e4);
+    assert!(found && products.loads.iter().all(|load| load.active));
+    for (a, b) in [(few, same), (many, expected)] {
+        let apart: Vec<f64> = a.iter().zip(&b).map(|(a, b)| a - b).collect();
+        let worst = crate::solve::norm(&apart) / crate::solve::norm(&b);
+        assert!(worst < 1e-8, "{worst:e}");
+    }
+}
+
+/// A chain that its contacts alone hold, all of which slip: nothing holds its mean, whatever form the
+/// Jacobian has.
+#[test]
+fn a_mean_that_nothing_holds_is_lost_with_a_formed_jacobian_too() {
+    let size = 100;
+    let stiffness = Mat::from_fn(size, size, |i, j| match i.abs_diff(j) {
+        0 if i == 0 || i + 1 == size => 900.0,
+        0 => 1800.0,
+        1 => -900.0,
+        _ => 0.0,
+    });
+    let mass = Mat::<f64>::identity(size, size);
+    let damping = faer::Scale(0.6) * &mass;
+    let structure = Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref()).unwrap();
+    let contact = |i: usize| Contact {
+        law: Box::new(Jenkins::new(150.0, 1e-3).unwrap()),
+        rows: Mat::from_fn(1, size, |_, j| f64::from(u8::from(i == j))),
+    };
+    let load = |harmonic, force: f64| HarmonicLoad {
+        harmonic,
+        amplitude: (0..size).map(|_| c64::new(force, 0.0)).collect(),
+    };
+    let loads = vec![load(1, 40.0), load(0, 1.0)];
+    let model = Model::new(structure, (0..size).map(contact).collect(), loads).unwrap();
+    let table = SampleTable::new(Harmonics::new(9, false));
+    for formed in [false, true] {
+        let mut equations = Condensed::new(&model, &table, Residual::Centred, false);
+        equations.set_omega(9.0).unwrap();
+        assert!(!formed || equations.form_instead());
+        let (found, _) = direction(&mut equations, 1.0);
+        assert!(!found && equations.free && equations.is_lost(), "{formed}");
+    }
 }
 
 /// A law that couples the points of a node has a tangent that every product reads: an estimate cannot afford

@@ -242,3 +242,22 @@ fn tiles(size: usize) -> impl Iterator<Item = (usize, usize)> {
         columns.flat_map(move |j| (first..j.min(first + TILE)).map(move |i| (i, j)))
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use faer::mat;
+
+    #[test]
+    fn damped_is_what_loses_energy_in_every_motion() {
+        let damped = |c: Mat<f64>| {
+            let one = Mat::<f64>::identity(2, 2);
+            Structure::new(one.as_ref(), c.as_ref(), one.as_ref()).map(|made| made.is_damped())
+        };
+        // What turns with the rotor takes nothing.
+        assert_eq!(damped(mat![[1.0, 5.0], [-5.0, 1.0]]), Ok(true));
+        for c in [mat![[1.0, 3.0], [3.0, 1.0]], mat![[1.0, 0.0], [0.0, 0.0]], Mat::zeros(2, 2)] {
+            assert_eq!(damped(c), Ok(false));
+        }
+    }
+}

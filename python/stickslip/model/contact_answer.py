@@ -124,7 +124,8 @@ def compare(
     entry: str,
 ) -> None:
     """Refuse tangents that are no derivative of a step."""
-    by_state, by_before, by_after, force_by_state, force_by_after = answer[2:]
+    force, new, by_state, by_before, by_after, force_by_state, force_by_after = answer
+    middle = {"force": force, "state": new}
     wholes = {
         "state": (force_by_state @ by_state, by_state),
         "before": (force_by_state @ by_before, by_before),
@@ -142,7 +143,7 @@ def compare(
         slopes = {"force": force_slope, "state": state_slope}
         wrong = ""
         for width in (relative * size for relative in _STEPS):
-            wrong = _contradiction(step, given, cause, width, slopes)
+            wrong = _contradiction(step, given, middle, cause, width, slopes)
             if not wrong:
                 break
         if wrong:
@@ -152,12 +153,12 @@ def compare(
 def _contradiction(
     step: Callable[..., list[Matrix]],
     given: dict[str, Matrix],
+    middle: dict[str, Matrix],
     cause: str,
     width: float,
     slopes: dict[str, Matrix],
 ) -> str:
-    """Say which slope differences contradict; nothing if there is none."""
-    middle = dict(zip(slopes, step(**given), strict=False))
+    """Say which slope differences about an answer contradict; nothing if there is none."""
     noise = {name: _ROUNDED * np.abs(one).max(initial=0.0) / width for name, one in middle.items()}
     for column in range(given[cause].shape[1]):
         sides: dict[str, list[Matrix]] = {name: [] for name in slopes}
