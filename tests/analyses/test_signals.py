@@ -297,9 +297,13 @@ def test_ctrl_c_while_a_file_is_saved_finishes_it(tmp_path, monkeypatch, ctrl_c)
     monkeypatch.setattr(store, "save", saving)
     done = CliRunner().invoke(app, ["run", "study.toml", "--no-plot"])
     assert done.exit_code == 130
-    assert "interrupted: 1 of 2 curves complete in results" in done.stderr
-    assert [file.name for file in Path("results").iterdir()] == ["beam-1.nc"]
-    assert ss.load("results/beam-1.nc").converged.all()
+    # What the other level, in a thread of its own, has come to is kept, too.
+    files = {file.name: ss.load(file) for file in Path("results").iterdir()}
+    whole = [name for name, result in files.items() if not result.interrupted]
+    assert "beam-1.nc" in whole
+    assert f"interrupted: {len(whole)} of 2 curves complete in results" in done.stderr
+    assert all(result.converged.all() for result in files.values())
+    assert all(name.endswith("-partial.nc") for name in files if name not in whole)
 
 
 @pytest.mark.slow

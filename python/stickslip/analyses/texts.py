@@ -101,7 +101,7 @@ TEXTS = {
     "rigid-contacts": "Nearly rigid: {_names}, up to {ratio:.1e} times as stiff as the structure "
     "there, and {points} {_are} not solved to the tolerance. Up to {_limit:.0e} times as stiff, "
     "motions are found. Lower the stiffness, which changes the motion by some thousandths, or try "
-    'exact_response or harmonics="auto".',
+    'harmonics="auto", or exact_response, which names what is too fast to follow.',
     "free-flight": "Nothing touches {body!r} during {share:.0%} of the period at omega = "
     "{omega:.6g} rad/s: all contacts that hold it are open at once, and in free flight neither "
     "stiffness nor damping decides where it goes; raise its load, or check the motion in time.",
