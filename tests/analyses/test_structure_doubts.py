@@ -8,7 +8,7 @@ from stickslip.results.diagnostic import Severity
 
 MASS = np.diag([1.0, 0.5])
 STIFFNESS = np.array([[3e4, -1e4], [-1e4, 2.5e4]])
-DOUBTS = {"overdamped", "negative-stiffness", "phase-unit"}
+DOUBTS = {"overdamped", "negative-stiffness", "phase-unit", "mistuning-unit"}
 
 
 def model(stiffness=STIFFNESS, damping=None, contacts=None, forces=None):
@@ -65,6 +65,40 @@ def test_blades_of_a_disk_are_asked_too():
     )
     for result in (ANALYSES["balance"](disk), ANALYSES["balance"](disk.mistuned(0)), study):
         assert list(doubts(result)) == ["overdamped"]
+
+
+def small_disk():
+    coupling = [ss.Coupling("x", stiffness=10.0)]
+    blade = model().structure
+    return ss.BladedDisk(blade, 3, coupling, forces=[ss.Force("y", 1.0)], engine_order=1)
+
+
+def test_percents_taken_for_deviations_of_blades_are_a_caution():
+    disk = small_disk()
+
+    def found(*given, **parts):
+        return doubts(ANALYSES["balance"](disk.mistuned(*given, **parts)))
+
+    assert found([0.02, 2.0, -0.5])["mistuning-unit"].text == (
+        "The stiffness of blade 1 deviates by 2, which is 200%; for 2 % give 0.02."
+    )
+    assert found(mass=[0.0, 0.5, -0.6])["mistuning-unit"].text == (
+        "The mass of blade 2 deviates by -0.6, which is -60%; for -0.6 % give -0.006."
+    )
+    stiffer = ss.Structure(MASS, 3.0 * STIFFNESS, None, ["x", "y"])
+    tuned = disk.structure
+    assert list(found(structures=[tuned, stiffer, tuned])) == ["mistuning-unit"]
+    assert not found([0.3, -0.4, 0.0], mass=[0.1, -0.2, 0.3])
+
+
+@pytest.mark.parametrize(
+    ("patterns", "doubtful"), [([[1.0, 0.5, 2.0]], True), ([[0.1, 0, -0.2]], False)]
+)
+def test_percents_taken_for_patterns_of_a_study_are_a_caution(patterns, doubtful):
+    study = ss.mistuning_study(
+        small_disk(), deviation=[0.1, 1.0], patterns=patterns, omega=(100, 400), harmonics=1
+    )
+    assert ("mistuning-unit" in doubts(study)) is doubtful
 
 
 @pytest.mark.parametrize("name", ANALYSES)
@@ -131,6 +165,24 @@ def test_rigid_motions_that_a_reduction_keeps_are_not_taken_for_unstable(ends, m
     assert structure.unstable_dof is None
     held = ss.craig_bampton(*free_beam(spring=-1.0), {"a": 0, "b": 60}, modes=modes)
     assert held.structure().unstable_dof == "b"
+
+
+@pytest.mark.parametrize("spring", [1e3, -1e3, 0.0])
+@pytest.mark.parametrize("ends", [(0, 60), (0, 1)])
+def test_massless_dofs_at_rigid_motions_are_judged_by_what_they_hold(ends, spring):
+    """Two massless dofs in series, the second of them loose or held to ground."""
+    beam = ss.craig_bampton(*free_beam(), dict(zip("ab", ends, strict=True)), modes=3).structure()
+    size = len(beam)
+    mass, stiffness = np.zeros((2, size + 2, size + 2))
+    mass[:size, :size], stiffness[:size, :size] = beam.mass, beam.stiffness
+    chain = np.array([[1e3, -1e3, 0], [-1e3, 1e3 + spring, -spring], [0, -spring, spring]])
+    rows = [beam.index("a"), size, size + 1]
+    stiffness[np.ix_(rows, rows)] += chain
+    free = ss.Structure(mass, stiffness, None, [*beam.dofs, "p", "q"])
+    assert (free.unstable_dof is None) is (spring >= 0.0)
+    stiffness[rows[0], rows[0]] -= 1.0
+    pulled = ss.Structure(mass, stiffness, None, [*beam.dofs, "p", "q"])
+    assert pulled.unstable_dof is not None
 
 
 def test_massless_dofs_and_units_leave_the_judgement_alone():

@@ -153,7 +153,8 @@ def _require_stiff(deviations: Float, patterns: Float) -> None:
     pattern, blade = (int(at) for at in np.unravel_index(patterns.argmin(), patterns.shape))
     raise ModelError(
         f"deviation: {largest:g} leaves blade {blade} of pattern {pattern} the stiffness "
-        f'{1.0 + largest * least:.3g} K; give a smaller one, or distribution="uniform"'
+        f"{1.0 + largest * least:.3g} K; give a smaller one, 0.05 for 5 %, or "
+        'distribution="uniform"'
     )
 
 

@@ -10,7 +10,7 @@ from stickslip.analyses.assumptions import (
     direct_assumption,
 )
 from stickslip.analyses.texts import told
-from stickslip.analyses.uniqueness import doubts, structure_doubts
+from stickslip.analyses.uniqueness import doubts, mistuning_unit, structure_doubts
 from stickslip.checks import listed
 from stickslip.model import Model
 from stickslip.results.arrays import Bool
@@ -60,9 +60,16 @@ def mistuning_assumptions(
             _range(settings, "Peaks are the highest points", at_edge, edges),
             *_peaks(settings, arrays, "peaks"),
             _truncation_of_factors(arrays, dofs),
+            _deviations(arrays),
             *structure_doubts(disk),
         )
     )
+
+
+def _deviations(arrays: MistuningArrays) -> Diagnostic | None:
+    """Say that the root mean square of the blades' deviations looks like percents."""
+    typical = float(arrays.deviation.max() * np.sqrt(np.mean(arrays.patterns**2)))
+    return mistuning_unit(typical, "The stiffness of a typical blade")
 
 
 def _peaks(

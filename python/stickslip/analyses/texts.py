@@ -116,6 +116,8 @@ TEXTS = {
     "'{phase:g} deg'.",
     "overdamped": "Damping ratio {ratio:g} is {ratio:.0%} of critical: such a mode does not "
     "oscillate; for {ratio:g} % give {_percent:g}.",
+    "mistuning-unit": "{_what} deviates by {deviation:g}, which is {deviation:.0%}; for "
+    "{deviation:g} % give {_percent:g}.",
     "truncation": "{_what} could still change {dof!r} by {share:.1%} at omega = {omega:.6g} rad/s, "
     "the worst point; {_remedy}.",
     "truncation/peak": "The discarded harmonics could still change the peak by {share:.1%} at "

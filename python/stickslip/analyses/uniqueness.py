@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from stickslip.analyses.texts import told
 from stickslip.checks import listed
+from stickslip.disk.mistuned import MistunedDisk
 from stickslip.model import Model
 from stickslip.model.structure import ModalDamping
 from stickslip.results.diagnostic import Diagnostic
 
 _ROUND, _DEGREES = 15.0, 5.0
 """Phases from the first on that are multiples of the second are taken for degrees."""
+_PERCENTS = 0.5
+"""Deviations of blades from here on are taken for percents: those of one disk are smaller."""
 
 
 def doubts(model: Model) -> tuple[Diagnostic | None, ...]:
@@ -19,7 +24,7 @@ def doubts(model: Model) -> tuple[Diagnostic | None, ...]:
 
 def structure_doubts(model: Model) -> tuple[Diagnostic | None, ...]:
     """Say what of a structure and its forces looks like a slip of sign or unit."""
-    return instability(model), _overdamped(model), _degrees(model)
+    return instability(model), _overdamped(model), _degrees(model), _mistuning(model)
 
 
 def uniqueness(model: Model) -> Diagnostic | None:
@@ -67,3 +72,24 @@ def _overdamped(model: Model) -> Diagnostic | None:
     if ratio < 1.0:
         return None
     return told("overdamped", ratio=ratio, _percent=0.01 * ratio)
+
+
+def mistuning_unit(deviation: float, what: str) -> Diagnostic | None:
+    """Say that a deviation of blades looks like one in percent."""
+    if abs(deviation) < _PERCENTS:
+        return None
+    return told("mistuning-unit", _what=what, deviation=deviation, _percent=0.01 * deviation)
+
+
+def _mistuning(model: Model) -> Diagnostic | None:
+    if not isinstance(model, MistunedDisk):
+        return None
+    for name in ("stiffness", "mass"):
+        tuned, *sizes = (
+            np.linalg.norm(getattr(one, name)) for one in (model.disk.structure, *model.blades)
+        )
+        deviations = np.array(sizes) / tuned - 1.0 if tuned else np.zeros(1)
+        blade = int(np.abs(deviations).argmax())
+        if found := mistuning_unit(deviations[blade], f"The {name} of blade {blade}"):
+            return found
+    return None

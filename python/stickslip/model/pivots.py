@@ -6,8 +6,10 @@ import numpy as np
 
 from stickslip.checks import Matrix
 
-__all__ = ["scaled_pivots"]
+__all__ = ["ROUNDING", "scaled_pivots", "unit_scale"]
 
+ROUNDING = 1e-9
+"""Rounding may put the zero eigenvalue of an undamped or rigid motion on either side, by this."""
 _LARGE = 64
 """Size over its bandwidth from which on a matrix is factored by its bands."""
 
@@ -17,8 +19,7 @@ def scaled_pivots(matrix: Matrix, shift: float = 0.0) -> Matrix | None:
 
     None if it is not positive definite. `shift` is added to the scaled diagonal.
     """
-    diagonal = np.abs(np.diag(matrix))
-    scale = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
+    scale = unit_scale(matrix)
     bands = _bands(matrix)
     try:
         if bands is None:
@@ -37,6 +38,12 @@ def scaled_pivots(matrix: Matrix, shift: float = 0.0) -> Matrix | None:
         return np.asarray(cholesky_banded(bands, lower=True, check_finite=False)[0] ** 2)
     except np.linalg.LinAlgError:
         return None
+
+
+def unit_scale(matrix: Matrix) -> Matrix:
+    """Return what scales rows and columns of a matrix to a diagonal of 1 or -1, shape (N,)."""
+    diagonal = np.abs(np.diag(matrix))
+    return np.asarray(1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0)))
 
 
 def _bands(matrix: Matrix) -> Matrix | None:

@@ -26,16 +26,13 @@ from stickslip.model.coupling import Coupling
 from stickslip.model.damping import DampingLaw, ModalDamping, Rayleigh
 from stickslip.model.dofs import Dofs
 from stickslip.model.matrix_units import MatrixUnits, Units
-from stickslip.model.pivots import scaled_pivots
+from stickslip.model.pivots import ROUNDING, scaled_pivots
+from stickslip.model.stability import unstable_row
 
 __all__ = ["DampingLaw", "ModalDamping", "Rayleigh", "Structure", "join"]
 
 # Printed matrices carry rounded digits; anything larger than this is a wrong matrix.
 _ASYMMETRY = 1e-8
-# Rounding may put the zero eigenvalue of an undamped or rigid motion on either side, by this share.
-_ROUNDING = 1e-9
-# Share of the lowest elastic omega^2 that rounding leaves of a rigid motion; reductions left 4e-8.
-_DRIFT = 1e-7
 _SHOWN = 6
 
 
@@ -132,7 +129,7 @@ class Structure(Dofs):
         # Gyroscopic terms are skew and do no work: only the symmetric part takes energy out.
         if scaled_pivots(self.damping, -1e-13) is not None:
             return True
-        return None if scaled_pivots(self.damping, _ROUNDING) is not None else False
+        return None if scaled_pivots(self.damping, ROUNDING) is not None else False
 
     @cached_property
     def unstable_dof(self) -> str | None:
@@ -140,34 +137,8 @@ class Structure(Dofs):
 
         By itself such a structure is statically unstable.
         """
-        if scaled_pivots(self.stiffness, _ROUNDING) is not None:
-            return None
-        from scipy.linalg import eigh
-
-        diagonal = np.abs(np.diag(self.stiffness))
-        scale = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
-        scaled = self.stiffness * scale * scale[:, None]
-        values, vectors = eigh(scaled, subset_by_index=[0, 0])
-        if values[0] > -10.0 * _ROUNDING or self._drifts():
-            return None
-        return self.dofs[int(np.abs(scale * vectors[:, 0]).argmax())]
-
-    def _drifts(self) -> bool:
-        """Whether rounding explains how fast a motion grows.
-
-        Where a reduction keeps just the dofs that hold a free structure, rounding is all that is
-        left of their stiffness: beside itself it looks large, beside the elastic modes it does not.
-        """
-        from scipy.linalg import LinAlgError, eigh
-
-        last = min(len(self) - 1, 12)  # two bodies have twelve rigid motions
-        try:
-            squares = eigh(self.stiffness, self.mass, eigvals_only=True, subset_by_index=[0, last])
-        except LinAlgError:  # dofs without mass
-            return False
-        # Rounding puts rigid motions on either side of zero, some much farther away than others.
-        largest = np.maximum.accumulate(np.abs(squares[:-1]))
-        return bool((largest < _DRIFT * squares[1:]).any())
+        row = unstable_row(self.stiffness, self.mass)
+        return None if row is None else self.dofs[row]
 
     @classmethod
     def of_law(
