@@ -83,6 +83,80 @@ def test_all_surfaces_of_elements_close():
             assert volume > 0.0
 
 
+BRICK = np.array([[x, y, z] for z in (0, 1) for x, y in ((0, 0), (2, 0), (2, 3), (0, 3))], float)
+TOP = np.array([[4, 5, 6, 7]])
+HALVES = np.array([[4, 5, 6], [4, 6, 7]])
+
+
+@pytest.mark.parametrize("halves", [HALVES, HALVES[::-1, ::-1], [[4, 5, 7], [5, 6, 7]]])
+def test_triangles_on_the_face_of_a_brick_do_not_count_again(halves):
+    """Membranes that read stresses at the surface are triangles on quadrilaterals too."""
+    on_top = BRICK[:, 2] == 1.0
+    brick, halves = ("hexahedron", np.arange(8)[None]), ("triangle", np.asarray(halves))
+    for cells in ([brick, halves], [halves, brick], [("quad", TOP), halves], [halves]):
+        assert ss.Mesh(BRICK, cells).surface(on_top).area == pytest.approx(6.0)
+    one = [brick, ("triangle", HALVES[:1])]
+    assert ss.Mesh(BRICK, one).surface(on_top).area == pytest.approx(6.0)
+
+
+def test_quadratic_triangles_on_a_quadratic_face_do_not_count_again():
+    middles = [(0, 1), (1, 2), (2, 3), (3, 0)]
+    middles += [(a + 4, b + 4) for a, b in middles] + [(a, a + 4) for a in range(4)] + [(4, 6)]
+    nodes = np.vstack([BRICK, [BRICK[list(edge)].mean(axis=0) for edge in middles]])
+    brick = ("hexahedron20", np.arange(20)[None])
+    shells = ("triangle6", [[4, 5, 6, 12, 13, 20], [4, 6, 7, 20, 14, 15]])
+    surface = ss.Mesh(nodes, [brick, shells]).surface(nodes[:, 2] == 1.0)
+    assert [face.shape for face in surface.faces if face.size] == [(1, 8)]
+    assert surface.area == pytest.approx(6.0)
+
+
+def test_bricks_upon_tetrahedra_are_inside():
+    """Meshes that are glued brick to tetrahedra have no surface there."""
+    above = np.vstack([BRICK, [[1.0, 1.5, 2.0]]])
+    tetrahedra = ("tetra", [[4, 5, 6, 8], [4, 6, 7, 8]])
+    for kind, own in (tetrahedra, ("pyramid", [[4, 5, 6, 7, 8]])):
+        mesh = ss.Mesh(above, [("hexahedron", np.arange(8)[None]), (kind, own)])
+        whole = mesh.surface(np.ones(9, dtype=bool))
+        assert sum(map(len, whole.faces)) == 5 + 4
+        with pytest.raises(ss.ModelError, match="it has no faces"):
+            mesh.surface(above[:, 2] == 1.0)
+
+
+def test_a_quadrilateral_on_the_faces_of_tetrahedra_does_not_count_again():
+    above = np.vstack([BRICK, [[1.0, 1.5, 2.0]]])
+    cells = [("quad", TOP), ("tetra", [[4, 5, 6, 8], [4, 6, 7, 8]])]
+    assert ss.Mesh(above, cells).surface(above[:, 2] == 1.0).area == pytest.approx(6.0)
+
+
+@pytest.mark.parametrize(
+    "rows",
+    [
+        "LOW, S2\n10, S2\n",
+        "LOW, S2\nSKIN\n",
+        "SKIN\nLOW, S2\n",
+        "LOW, S2\nHALVES, SPOS\n",
+        "HALVES\nSKIN\n",
+    ],
+)
+def test_faces_that_a_surface_names_twice_count_once(tmp_path, rows):
+    skin = (
+        "*ELEMENT, TYPE=S4, ELSET=SKIN\n40, 5,6,7,8\n"
+        "*ELEMENT, TYPE=M3D3, ELSET=HALVES\n41, 5,6,7\n42, 5,7,8\n"
+    )
+    text = DECK.replace("*NSET, NSET=FEET", skin + "*NSET, NSET=FEET").replace("LOW, S2\n", rows)
+    seat = ss.read_mesh(deck(tmp_path, text)).surface("SEAT")
+    assert seat.area == pytest.approx(6.0)
+    np.testing.assert_allclose(seat.normals, np.tile([0, 0, 1.0], (4, 1)), atol=1e-15)
+
+
+def test_both_sides_of_a_shell_are_refused_as_one_surface(tmp_path):
+    skin = "*ELEMENT, TYPE=S4, ELSET=SKIN\n40, 5,6,7,8\n*NSET, NSET=FEET"
+    text = DECK.replace("*NSET, NSET=FEET", skin)
+    text = text.replace("LOW, S2\n", "SKIN, SPOS\nSKIN, SNEG\n")
+    with pytest.raises(ss.ModelError, match="leave one of two opposite sides out"):
+        _ = ss.read_mesh(deck(tmp_path, text)).surface("SEAT").normals
+
+
 @pytest.mark.parametrize(
     ("old", "new", "says"),
     [

@@ -9,6 +9,7 @@ import numpy as np
 
 from stickslip.checks import Matrix
 from stickslip.errors import ModelError
+from stickslip.fe.overlap import corner_keys, uncovered
 from stickslip.fe.surface import Places, outward
 
 _QUADRILATERAL = [(0, 1), (1, 2), (2, 3), (3, 0)]
@@ -54,7 +55,8 @@ _SOLID = re.compile("(VTK_LAGRANGE_)?(tetra|pyramid|wedge|hexahedron)", re.I)
 def outside(cells: Sequence[tuple[str, Places]], points: Matrix) -> list[Places]:
     """Return the faces that belong to one solid element only, and the shells on no solid.
 
-    A shell on the face of a solid, with the same corners, would count the area of the face twice.
+    A shell on the face of a solid, with the same corners, or on half of it, would count its area
+    twice.
     """
     strange = next((kind for kind, _ in cells if _SOLID.match(kind) and kind not in KINDS), None)
     if strange is not None:
@@ -70,21 +72,7 @@ def outside(cells: Sequence[tuple[str, Places]], points: Matrix) -> list[Places]
         for number in range(1, len(_FACES[KINDS[kind]]) + 1)
         for faces in [element_faces(kind, own, number, points)]
     ]
-    shells = [own for kind, own in known if KINDS[kind] in _SHELLS]
-    every = [*found, *shells]
-    if not every:
-        return []
-    keys = np.vstack(list(map(_corners, every)))
-    _, first, place = np.unique(keys, axis=0, return_index=True, return_inverse=True)
-    place, count = place.ravel(), sum(map(len, found))
-    of_solids = np.bincount(place[:count], minlength=len(first))
-    kept = of_solids[place] == 1
-    # The first face of several alike is one of a solid, if there is one.
-    kept[count:] = first[place[count:]] == np.arange(count, len(keys))
-    # Corners of bricks that coincide make edges of faces.
-    kept &= keys[:, 1] >= 0
-    ends = np.cumsum([len(faces) for faces in every])[:-1]
-    return [faces[one] for faces, one in zip(every, np.split(kept, ends), strict=True)]
+    return uncovered(found, [own for kind, own in known if KINDS[kind] in _SHELLS])
 
 
 def element_faces(kind: str, cells: Places, number: int, points: Matrix) -> Places:
@@ -106,18 +94,9 @@ def face_count(kind: str) -> int:
     return len(_FACES[KINDS[kind]])
 
 
-def _corners(faces: Places) -> Places:
-    """Return the corners of faces in ascending order, (m, 4), of triangles after a -1."""
-    corners = faces[:, : 4 if faces.shape[1] in (4, 8) else 3]
-    padded = np.full((len(faces), 4), -1)
-    padded[:, 4 - corners.shape[1] :] = np.sort(corners, axis=1)
-    padded[:, 1:][padded[:, 1:] == padded[:, :-1]] = -1
-    return np.sort(padded, axis=1)
-
-
 def keys_of(faces: Places) -> Iterator[tuple[int, ...]]:
     """Give what tells each face from others, whatever its order: its corners."""
-    return map(tuple, _corners(faces).tolist())
+    return map(tuple, corner_keys(faces).tolist())
 
 
 def by_size(faces: Iterable[Places]) -> tuple[Places, ...]:

@@ -25,6 +25,7 @@ from stickslip.checks import (
 )
 from stickslip.errors import ModelError
 from stickslip.fe.faces import outside
+from stickslip.fe.overlap import distinct
 from stickslip.fe.reduction import Reduction
 from stickslip.fe.solid import Solid
 from stickslip.fe.surface import Places, Surface
@@ -319,7 +320,7 @@ class Mesh:
         write_vtu(path, self.nodes, self.cells, fields)
 
     def _surface_of(self, faces: Iterable[Places], entry: str) -> Surface:
-        made = Surface.of(self.numbers, self.nodes, faces, entry)
+        made = Surface.of(self.numbers, self.nodes, distinct(list(faces), self.nodes), entry)
         self._require_global(np.flatnonzero(np.isin(self.numbers, made.labels)), entry)
         return made
 

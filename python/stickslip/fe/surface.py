@@ -28,12 +28,16 @@ _TRIANGLE = (
 
 def outward(faces: Places, points: Matrix, inside: Matrix) -> Places:
     """Return faces, (m, k), numbered so that their normals point away from the points inside."""
-    corners = _CORNERS[faces.shape[1]]
-    middle = points[faces[:, :corners]].mean(axis=1)
-    first, *_, last = (points[faces[:, one]] for one in (0, 1, corners - 1))
-    normal = np.cross(points[faces[:, 1]] - first, last - first)
-    inverted = np.einsum("mi,mi->m", normal, middle - inside) < 0.0
+    middle = points[faces[:, : _CORNERS[faces.shape[1]]]].mean(axis=1)
+    inverted = np.einsum("mi,mi->m", area_vectors(faces, points), middle - inside) < 0.0
     return np.where(inverted[:, None], turned(faces), faces)
+
+
+def area_vectors(faces: Places, points: Matrix) -> Matrix:
+    """Return the normals of faces with straight edges, as long as their areas, shape (m, 3)."""
+    corners = (0, 1, 2, _CORNERS[faces.shape[1]] - 1)
+    first, second, third, last = (points[faces[:, one]] for one in corners)
+    return 0.5 * np.cross(third - first, last - second)
 
 
 def turned(faces: Places) -> Places:

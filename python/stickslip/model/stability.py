@@ -35,7 +35,7 @@ def _drifts(stiffness: Matrix, mass: Matrix) -> bool:
     """
     from scipy.linalg import eigh
 
-    inert = mass.any(axis=1)
+    inert: NDArray[np.bool_] = np.asarray(mass.any(axis=1))
     seen = _condensed(stiffness, inert)
     if seen is None:
         return False
@@ -64,4 +64,5 @@ def _condensed(stiffness: Matrix, inert: NDArray[np.bool_]) -> Matrix | None:
     if values[0] < -10.0 * ROUNDING or pull.max(initial=0.0) > ROUNDING:
         return None
     across = across[held]
-    return own - across.T @ (across / values[held, None])
+    seen: Matrix = own - across.T @ (across / values[held, None])
+    return seen
