@@ -61,25 +61,27 @@ def test_shares_of_the_variance_are_those_of_the_closed_form(rubbing):
         ((weights @ values) ** 2 @ weights - mean**2) / variance,
     ]
     found = rubbing.expansion("amplitude").sobol()
-    assert found.error < 1e-4
-    assert [one.value for one in found.first.values()] == pytest.approx(first, abs=1e-4)
+    assert found.error < 1e-7
+    assert [one.value for one in found.first.values()] == pytest.approx(first, abs=1e-6)
     total = [1.0 - first[1], 1.0 - first[0]]
-    assert [one.value for one in found.total.values()] == pytest.approx(total, abs=1e-4)
+    assert [one.value for one in found.total.values()] == pytest.approx(total, abs=1e-6)
     for shares_of in (found.first, found.total):
         assert all(one.low <= one.value <= one.high for one in shares_of.values())
     expansion = rubbing.expansion("amplitude")
-    assert expansion.mean == pytest.approx(mean, rel=1e-4)
-    assert expansion.deviation**2 == pytest.approx(variance, rel=1e-3)
+    assert expansion.mean == pytest.approx(mean, rel=1e-6)
+    assert expansion.deviation**2 == pytest.approx(variance, rel=1e-5)
 
 
 @pytest.mark.slow
 def test_the_degree_is_that_of_the_least_error(rubbing):
     chosen = rubbing.expansion("amplitude")
     errors = {n: rubbing.expansion("amplitude", degree=n).cross_validation for n in range(1, 16)}
-    assert errors[chosen.degree] == chosen.cross_validation == min(errors.values())
-    # As many degrees as the samples allow would fit their noise.
+    tried = min(errors[n] for n in range(1, chosen.degree + 3))
+    assert errors[chosen.degree] == chosen.cross_validation == tried < 3e-8
+    # None that is not tried is much better; as many as the samples allow fit their noise.
+    assert min(errors.values()) > 0.5 * chosen.cross_validation
     assert chosen.degree < 10
-    assert errors[15] > 100.0 * chosen.cross_validation
+    assert errors[15] > 10.0 * chosen.cross_validation
     assert f"degree {chosen.degree}" in repr(chosen)
     assert rubbing.expansion("amplitude", degree=3).degree == 3
 

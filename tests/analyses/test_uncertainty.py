@@ -11,7 +11,7 @@ import pytest
 from scipy import stats
 
 import stickslip as ss
-from stickslip.results.expansion import fit_expansion
+from stickslip.results.expansion import drawn_shares, fit_expansion
 
 BEAM = ss.reference.snecma_beam()
 SPAN = (100.0, 300.0)
@@ -301,3 +301,18 @@ def test_values_whose_mean_is_zero_to_the_last_digit_have_an_expansion():
     found = fit_expansion(["a", "b", "c"], [stats.uniform(-1.0, 2.0)] * 3, parameters, values)
     assert len(found.degrees) > 3
     assert found.cross_validation < 1e-3
+
+
+@pytest.mark.parametrize("shift", [1e-16, 1e-12, 1e-6, 1.0])
+def test_products_of_values_do_not_hang_on_their_mean(shift):
+    law = stats.uniform(-1.0, 2.0)
+    parameters = law.ppf(drawn_shares("sobol", 2, 64, seed=0))
+    a, b = parameters.T
+    values = np.sin(2.0 * a) + 0.3 * b * a**2
+    given = fit_expansion(["a", "b"], [law] * 2, parameters, values, degree=5)
+    moved = fit_expansion(
+        ["a", "b"], [law] * 2, parameters, values - values.mean() + shift, degree=5
+    )
+    assert given.degrees.tolist() == moved.degrees.tolist()
+    assert moved.cross_validation == pytest.approx(given.cross_validation, rel=1e-3)
+    assert moved.cross_validation < 1e-5

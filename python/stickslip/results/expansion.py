@@ -36,6 +36,8 @@ _SPARSE = 0.75
 """Exponent of the hyperbolic truncation: products of many parameters have low degrees."""
 _RISES = 2
 """Degrees in turn that do not lower the error, after which no higher one is tried."""
+_EXACT = 1e-12
+"""Error that no higher degree has to lower: samples are known to six digits at best."""
 _RESAMPLED = 200
 """Resampled sets of samples from which intervals are taken."""
 _POINTS = 2**14
@@ -240,7 +242,7 @@ def fit_expansion(
         The number at every sample.
     degree : int, optional
         Highest degree. Default: the one of the least error by cross-validation. Degrees rise from 1
-        until the error has risen twice running, as far as the samples allow.
+        until the error has risen twice running or is below 1e-12, as far as the samples allow.
 
     Raises
     ------
@@ -257,7 +259,11 @@ def fit_expansion(
     if degree is not None:
         return made(whole_number(degree, "degree", smallest=1))
     best, rises = made(1), 0
-    while rises < _RISES and best.degree + rises < _highest(len(germs), values.size):
+    while (
+        rises < _RISES
+        and best.cross_validation > _EXACT
+        and best.degree + rises < _highest(len(germs), values.size)
+    ):
         other = made(best.degree + rises + 1)
         # Of noise alone every degree explains nothing: the least one stays.
         better = other.cross_validation < best.cross_validation
@@ -318,8 +324,8 @@ def _selected(
     margins = [ot.Uniform(-1.0, 1.0) if one.bounded else ot.Normal() for one in germs]
     algorithm = ot.FunctionalChaosAlgorithm(
         ot.Sample(points),
-        # Its selection ends at once where the mean is zero to the last digit.
-        ot.Sample(((values - values.mean()) / scale + 1e-9)[:, np.newaxis]),
+        # Values from 1 to 3: where their mean is nearly 0, rounding ends the selection too soon.
+        ot.Sample(((values - values.mean()) / scale + 2.0)[:, np.newaxis]),
         ot.JointDistribution(margins),
         ot.FixedStrategy(ot.OrthogonalProductPolynomialFactory(families, rule), size),
         ot.LeastSquaresStrategy(
