@@ -5,6 +5,9 @@ PYTHON ?= python3
 BIN    := $(VENV)/bin
 # Of the random tests: the same cases for everybody. Others are tried with make test SEED=$$RANDOM.
 SEED   ?= 1999
+# Where the environment forbids compiled files, as container images do, Python compiles the package anew
+# for every command that a test runs: that doubles the time of the tests.
+export PYTHONDONTWRITEBYTECODE :=
 
 .PHONY: demo test wheel quick rust python docs bench peers clean tools
 .DEFAULT_GOAL := help

@@ -25,6 +25,7 @@ micro- = 1e-6 = µ- = μ- = u-
 milli- = 1e-3 = m-
 centi- = 1e-2 = c-
 deci- = 1e-1 = d-
+deca- = 10 = da-
 kilo- = 1e3 = k-
 mega- = 1e6 = M-
 giga- = 1e9 = G-

@@ -8,7 +8,14 @@ from stickslip.results.diagnostic import Severity
 
 MASS = np.diag([1.0, 0.5])
 STIFFNESS = np.array([[3e4, -1e4], [-1e4, 2.5e4]])
-DOUBTS = {"overdamped", "negative-stiffness", "phase-unit", "mistuning-unit"}
+DOUBTS = {
+    "overdamped",
+    "negative-stiffness",
+    "phase-unit",
+    "mistuning-unit",
+    "friction-unit",
+    "two-frequencies",
+}
 
 
 def model(stiffness=STIFFNESS, damping=None, contacts=None, forces=None):
@@ -206,3 +213,34 @@ def test_degrees_taken_for_radians_are_a_caution(name):
         )
     for phase in ("180 deg", 12 * np.pi, 2 * np.pi * 3 * 35 / 36, 5.0, 7.3):
         assert not driven(phase)
+
+
+def pressed(friction):
+    stiffness = {"tangential_stiffness": 1e4, "normal_stiffness": 1e4, "preload": 5.0}
+    return ss.Coulomb(["x", "y"], normal=[0, 1], friction=friction, **stiffness, name="pad")
+
+
+@pytest.mark.parametrize("name", ANALYSES.keys() - {"single"})
+def test_percents_taken_for_a_coefficient_of_friction_are_a_caution(name):
+    found = doubts(ANALYSES[name](model(contacts=[pressed(30.0)])))
+    assert found["friction-unit"].text == (
+        "The coefficient of friction of 'pad' is 30; for 30 % give 0.3."
+    )
+    for friction in (0.3, 1.5, 1e6):
+        assert not doubts(ANALYSES[name](model(contacts=[pressed(friction)])))
+
+
+@pytest.mark.parametrize("analysis", [ss.forced_response, ss.single_harmonic, ss.exact_response])
+def test_two_frequencies_that_look_like_a_range_are_a_caution(analysis):
+    held = model()
+    found = doubts(analysis(held, ["20 Hz", "50 Hz"]))
+    assert found["two-frequencies"].text == (
+        "omega = [125.664, 314.159] are two frequencies, and nothing between them was computed; "
+        "a range is omega = (125.664, 314.159), in study files { from = 125.664, to = 314.159 }."
+    )
+    for omega in ([150.0, 160.0], [100.0, 200.0, 300.0], [150.0]):
+        assert not doubts(analysis(held, omega))
+
+
+def test_a_range_is_none_of_two_frequencies():
+    assert not doubts(ss.forced_response(model(), (120.0, 300.0), harmonics=1))

@@ -1,6 +1,7 @@
 """The command line: what its commands write and print."""
 
 import json
+import shlex
 import shutil
 from pathlib import Path
 
@@ -52,6 +53,19 @@ def test_a_study_without_levels_gives_one_file(folder):
     assert result.stdout.split()[0] == "dof"
     assert "picture" not in result.stdout
     assert f"results: {Path('deep', 'er', saved.name)}" in result.stdout
+
+
+def test_commands_that_are_told_can_be_copied(folder):
+    text = study_text("omega = [170]\nharmonics = 1")
+    (folder / "study.toml").write_text('name = "Blade 3, worn"\n' + text)
+    lines = invoke("run", "study.toml", "--no-plot").stdout.splitlines()
+    file = Path("results", "Blade 3, worn.nc")
+    assert f"results: {file}" in lines
+    for title, name in (("details", "show"), ("page:  ", "report")):
+        (line,) = (one for one in lines if one.startswith(title))
+        _, command = line.split(":", 1)
+        assert shlex.split(command) == ["stickslip", name, str(file)]
+        assert invoke(*shlex.split(command)[1:]).exit_code == 0
 
 
 @pytest.mark.slow

@@ -29,6 +29,8 @@ LARGE_ERROR = 0.05
 COARSE_TURN = 0.5
 """Angle per Runge-Kutta step above which a motion loses accuracy noticeably [rad]."""
 
+_APART = 1.25
+"""Ratio of two frequencies from which on they are taken for the ends of a range."""
 _SHOWN = 6
 
 
@@ -65,6 +67,7 @@ def balance_assumptions(
                     points=orbits,
                     _take="point takes its" if orbits == 1 else "points take their",
                 ),
+                settings.span is None and _two_frequencies(arrays),
                 _observed(model, dofs),
                 *doubts(model),
                 _truncation(dofs, arrays, single=single),
@@ -97,6 +100,7 @@ def orbit_assumptions(
                 settings.span is not None
                 and told("frequencies/balance", tolerance=settings.tolerance, _low=low, _high=high),
                 _frequencies(None, settings.tolerance, arrays, solution, asked),
+                settings.span is None and _two_frequencies(arrays),
                 _observed(model, dofs),
                 *doubts(model),
                 missed_tolerances(arrays.status, "points"),
@@ -294,6 +298,14 @@ def turn_per_step(model: Model, settings: TransientSettings) -> float:
         return 0.0
     step = 2.0 * np.pi / (settings.omega * settings.steps)
     return step * float(natural_frequencies(model)[-1])
+
+
+def _two_frequencies(arrays: Arrays) -> Diagnostic | None:
+    """Say that what looks like the ends of a range was not taken for one."""
+    if arrays.omega.size != 2:
+        return None
+    low, high = sorted(arrays.omega.tolist())
+    return told("two-frequencies", low=low, high=high) if high > _APART * low else None
 
 
 def _harmonics(settings: ForcedSettings, arrays: Arrays, half_wave: bool) -> Diagnostic | None:

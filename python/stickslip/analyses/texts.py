@@ -118,6 +118,11 @@ TEXTS = {
     "oscillate; for {ratio:g} % give {_percent:g}.",
     "mistuning-unit": "{_what} deviates by {deviation:g}, which is {deviation:.0%}; for "
     "{deviation:g} % give {_percent:g}.",
+    "friction-unit": "The coefficient of friction of {contact!r} is {friction:g}; for "
+    "{friction:g} % give {_percent:g}.",
+    "two-frequencies": "omega = [{low:g}, {high:g}] are two frequencies, and nothing between them "
+    "was computed; a range is omega = ({low:g}, {high:g}), in study files "
+    "{{ from = {low:g}, to = {high:g} }}.",
     "truncation": "{_what} could still change {dof!r} by {share:.1%} at omega = {omega:.6g} rad/s, "
     "the worst point; {_remedy}.",
     "truncation/peak": "The discarded harmonics could still change the peak by {share:.1%} at "

@@ -7,12 +7,14 @@ import numpy as np
 from stickslip.analyses.texts import told
 from stickslip.checks import listed
 from stickslip.disk.mistuned import MistunedDisk
-from stickslip.model import Model
+from stickslip.model import Coulomb, Model
 from stickslip.model.structure import ModalDamping
 from stickslip.results.diagnostic import Diagnostic
 
 _ROUND, _DEGREES = 15.0, 5.0
 """Phases from the first on that are multiples of the second are taken for degrees."""
+_FRICTION = 3.0, 100.0
+"""Coefficients between these look like percents; larger ones are those of contacts that stick."""
 _PERCENTS = 0.5
 """Deviations of blades from here on are taken for percents: those of one disk are smaller."""
 
@@ -23,8 +25,9 @@ def doubts(model: Model) -> tuple[Diagnostic | None, ...]:
 
 
 def structure_doubts(model: Model) -> tuple[Diagnostic | None, ...]:
-    """Say what of a structure and its forces looks like a slip of sign or unit."""
-    return instability(model), _overdamped(model), _degrees(model), _mistuning(model)
+    """Say what of a structure, its contacts and forces looks like a slip of sign or unit."""
+    found = (_overdamped(model), _degrees(model), _mistuning(model), _friction(model))
+    return instability(model), *found
 
 
 def uniqueness(model: Model) -> Diagnostic | None:
@@ -92,4 +95,13 @@ def _mistuning(model: Model) -> Diagnostic | None:
         blade = int(np.abs(deviations).argmax())
         if found := mistuning_unit(deviations[blade], f"The {name} of blade {blade}"):
             return found
+    return None
+
+
+def _friction(model: Model) -> Diagnostic | None:
+    least, most = _FRICTION
+    for name, contact in zip(model.contact_names, model.contacts, strict=True):
+        friction = float(np.max(contact.friction)) if isinstance(contact, Coulomb) else 0.0
+        if least <= friction <= most:
+            return told("friction-unit", contact=name, friction=friction, _percent=0.01 * friction)
     return None

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
@@ -178,5 +179,5 @@ def _tell_files(study: Study, out: Path, picture: Path | None) -> None:
     first, count = _file(out, study.cases[0]), len(study.cases)
     several = f"{out / f'{study.name}-*.nc'} ({count} files)"
     tell(f"results: {first if count == 1 else several}")
-    tell(f"details: stickslip show {first}")
-    tell(f"page:    stickslip report {first}")
+    tell(f"details: stickslip show {quote(str(first))}")
+    tell(f"page:    stickslip report {quote(str(first))}")

@@ -25,6 +25,7 @@ from stickslip.errors import ModelError
 from stickslip.model.coupling import Coupling
 from stickslip.model.damping import DampingLaw, ModalDamping, Rayleigh
 from stickslip.model.dofs import Dofs
+from stickslip.model.labels import names_of_tables
 from stickslip.model.matrix_units import MatrixUnits, Units
 from stickslip.model.pivots import ROUNDING, scaled_pivots
 from stickslip.model.stability import unstable_row
@@ -95,7 +96,7 @@ class Structure(Dofs):
         if not M.size:
             raise ModelError("mass: 0 x 0; a structure needs at least one dof")
         require_square(M, "mass")
-        names = _names(dofs, len(M))
+        names = _names(names_of_tables(dofs, (mass, stiffness, damping)), len(M))
         if units is not None:
             known = MatrixUnits.of(units)
             M, K = known.in_si(M, "mass", names), known.in_si(K, "stiffness", names)
@@ -314,7 +315,7 @@ def _damping(
         return np.zeros_like(mass)
     if isinstance(damping, DampingLaw):
         return damping.matrix(mass, stiffness, names)
-    if isinstance(damping, Real):
+    if isinstance(damping, Real | str):
         raise ModelError(
             f"damping: {brief(damping)} is not a matrix; write ModalDamping({brief(damping)})"
         )
