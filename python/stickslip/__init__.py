@@ -42,7 +42,7 @@ _NAMES = {
     "errors": "Interrupted ModelError",
     "fe": "ContactInterface Mesh Reduction Solid craig_bampton",
     "html.report": "report",
-    "io": "Frf read_dofs read_frf read_matrix read_mesh write_frf",
+    "io": "Frf read_curve read_dofs read_frf read_matrix read_mesh write_frf",
     "model": "BoucWen ContactLaw Coulomb Cubic Force Iwan Jenkins Masing ModalDamping Model "
     "ParallelJenkins Rayleigh Stop StructuralDamper Structure Tangents join natural_frequencies "
     "slip_configurations",

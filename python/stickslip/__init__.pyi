@@ -49,6 +49,7 @@ from stickslip.fe import Solid as Solid
 from stickslip.fe import craig_bampton as craig_bampton
 from stickslip.html.report import report as report
 from stickslip.io import Frf as Frf
+from stickslip.io import read_curve as read_curve
 from stickslip.io import read_dofs as read_dofs
 from stickslip.io import read_frf as read_frf
 from stickslip.io import read_matrix as read_matrix

@@ -117,3 +117,13 @@ def test_what_tells_functions_apart_is_one_line(tmp_path):
     assert (named.about, plain.about) == (f"preload = 1 N level = 2{57 * 'x'}", "")
     with pytest.raises(ss.ModelError, match=r"about: .* has a control character"):
         ss.Frf([1.0, 2.0], [1.0, 2.0], "1.1", "1.1", about="a\0b")
+
+
+def test_a_table_is_sent_to_what_reads_it(tmp_path):
+    path = tmp_path / "level-100.csv"
+    path.write_text("Frequency [Hz];Amplitude [mm]\n20,5;0,0012\n21;0,0015\n")
+    with pytest.raises(ModelError, match="no Universal File; read_curve reads a table"):
+        ss.read_frf(path)
+    frequency, amplitude = ss.read_curve(path)
+    assert frequency.tolist() == [20.5, 21.0]
+    assert amplitude.tolist() == [0.0012, 0.0015]

@@ -305,6 +305,10 @@ def _require_datasets(file: Path) -> None:
             if number > _HEAD and kind == _TEXT and not _NUMBERS.fullmatch(line):
                 shown = brief(line.decode("latin-1").strip())
                 raise ModelError(f"{file}: {shown} holds no numbers; the file is damaged")
+        elif line.strip() and not ended:
+            raise ModelError(
+                f"{file}: no Universal File; read_curve reads a table of frequencies and amplitudes"
+            )
         elif line.strip():
             raise ModelError(f"{file}: a line stands outside the datasets; the file is damaged")
     if number or not ended:
