@@ -75,6 +75,7 @@ def test_a_load_in_equilibrium_is_a_preload():
     assert limits[1].ratio == pytest.approx(limits[0].ratio, rel=1e-4)
 
 
+@pytest.mark.slow
 def test_stable_cycles_attract_and_unstable_ones_do_not():
     structure = ss.Structure(
         np.eye(2), [[2e4, -1e4], [-1e4, 3e4]], np.diag([0.5, 40.0]), ["x", "z"]

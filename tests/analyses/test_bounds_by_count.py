@@ -20,6 +20,7 @@ def benchmark():
     return module
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [2, 3, 4, 12])
 def test_random_residuals_lie_inside(benchmark, seed):
     model = benchmark.system(np.random.default_rng(seed))
@@ -41,6 +42,7 @@ def test_random_residuals_lie_inside(benchmark, seed):
         assert (amplitude >= lower[held] * (1.0 - SEARCH)).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("seed", "at"), [(1, 8), (5, 10), (19, 5)])
 def test_vibrations_beside_that_of_the_curve_lie_inside(benchmark, seed, at):
     """Motions in time from random starts settle elsewhere too where the normal load varies."""

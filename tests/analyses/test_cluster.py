@@ -99,6 +99,7 @@ class Breaking(ss.ContactLaw):
         return force, force, ss.Tangents(one, -10.0 * one, 10.0 * one, one, 0.0 * one)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("spread", [False, True])
 def test_laws_of_disks_of_every_coupling_are_heeded(spread, monkeypatch):
     def breaking(disk):

@@ -49,6 +49,7 @@ def test_a_step_that_was_answered_is_not_taken_again():
     assert len(law.asked) < 1.02 * len(set(law.asked)) + 100
 
 
+@pytest.mark.slow
 def test_numbers_set_anew_between_analyses_are_heeded():
     model = made()[1]
     (law,) = model.contacts
@@ -63,6 +64,7 @@ def test_numbers_set_anew_between_analyses_are_heeded():
     np.testing.assert_array_equal(first.contact_force(0, 0), forces)
 
 
+@pytest.mark.slow
 def test_answers_do_not_fill_the_memory(monkeypatch):
     monkeypatch.setattr(contact_answer, "_KEPT", 700)
     kept = []
@@ -98,6 +100,7 @@ def test_forces_of_another_shape_are_refused(force, shape):
         balance(model.replaced(contacts=[wrong]))
 
 
+@pytest.mark.slow
 def test_limit_cycles_refuse_a_law_whose_onset_is_unknown_with_a_remedy_that_works():
     model, negative = made()[1], ss.Rayleigh(mass=-8.0)
     with pytest.raises(ss.ModelError, match=r"nonlinear_modes\(model, \.\.\.\)\.limit_cycles\("):
@@ -112,6 +115,7 @@ def test_laws_without_events_are_sent_to_steps_in_time():
     assert ss.transient(made()[1], omega=150.0, periods=1, scheme="rk4").periods == 1
 
 
+@pytest.mark.slow
 def test_an_analysis_that_ends_beside_another_takes_nothing_from_it():
     law = Dahl(["x"], k=4e3, limit=1.0)
 

@@ -35,6 +35,7 @@ def nearly_locking_wedge() -> ss.Model:
     return ss.Model(ss.Structure(masses, stiffness, damping, names), faces, forces)
 
 
+@pytest.mark.slow
 def test_a_motion_that_its_history_decides_is_called_so() -> None:
     model, omega = nearly_locking_wedge(), 194.0
     orbit = ss.exact_response(model, [omega])
@@ -203,6 +204,7 @@ def springs_that_lift_off() -> ss.Model:
     return ss.Model(ss.Structure(masses, stiffness, damping, dofs), contacts, forces)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("harmonics", [5, 9, 15])
 def test_a_motion_that_settles_is_found_where_nothing_else_leads(harmonics: int) -> None:
     # A stop has no events that an exact orbit could be followed by.

@@ -43,6 +43,7 @@ def test_peaks_of_a_map_are_those_of_fine_curves():
     assert axes.get_xlabel() == "mass"
 
 
+@pytest.mark.slow
 def test_a_peak_that_wants_more_harmonics_says_so():
     values = {"mass": [1e-2], "angle": [45.0]}
     span = {"dof": "left.x", "omega": (95.0, 120.0)}
@@ -198,6 +199,7 @@ def test_a_resonance_between_the_points_of_the_coarse_grid_is_found():
             assert found.amplitude[row, column] == pytest.approx(curve.amplitude[0], rel=1e-2)
 
 
+@pytest.mark.slow
 def test_ctrl_c_keeps_the_cells_that_are_done():
     shares = []
 

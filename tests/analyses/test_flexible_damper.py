@@ -68,6 +68,7 @@ def response(model):
     return frf
 
 
+@pytest.mark.slow
 def test_component_modes_move_as_all_degrees_of_freedom():
     """Thirteen of fourteen, the rigid-body modes among them, are as good as all."""
     full = response(in_full())
@@ -102,6 +103,7 @@ def test_time_integration_of_a_flexible_damper():
             assert amplitude == pytest.approx(frf.amplitude("left.x")[0], rel=1e-6)
 
 
+@pytest.mark.slow
 def test_a_stiff_bar_is_a_rigid_body():
     along = SPACING * (np.arange(NODES) - (NODES - 1) / 2.0)
 

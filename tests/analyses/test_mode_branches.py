@@ -61,6 +61,7 @@ def test_corners_of_random_joints_are_passed():
         assert branch.arrays.residual.max() < 1e-6
 
 
+@pytest.mark.slow
 def test_a_branch_that_ends_says_why():
     model, mode = jointed(np.random.default_rng([11, 48]))
     amplitudes = np.geomspace(1e-6, 1e-2, 9)

@@ -100,6 +100,7 @@ def test_what_a_part_raises_comes_in_its_place(monkeypatch: pytest.MonkeyPatch) 
         next(found)
 
 
+@pytest.mark.slow
 def test_numbers_are_the_same_with_any_number_of_threads(monkeypatch: pytest.MonkeyPatch) -> None:
     model, negative = flutter()
     disk = ss.BladedDisk(
@@ -134,6 +135,7 @@ def test_numbers_are_the_same_with_any_number_of_threads(monkeypatch: pytest.Mon
             np.testing.assert_array_equal(one, two)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("count", [1, 3])
 def test_ctrl_c_keeps_the_levels_that_are_complete(
     monkeypatch: pytest.MonkeyPatch, count: int

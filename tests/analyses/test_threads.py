@@ -5,6 +5,7 @@ import subprocess
 import sys
 
 import numpy as np
+import pytest
 
 import stickslip as ss
 from stickslip.reference import snecma_beam
@@ -28,6 +29,7 @@ def swept(threads: int, sweep: str) -> str:
     return done.stdout
 
 
+@pytest.mark.slow
 def test_exact_orbits_of_a_sweep_in_pieces() -> None:
     sweep = "ss.exact_response(snecma_beam(), np.linspace(20, 350, 40))"
     alone = swept(1, sweep)
@@ -35,6 +37,7 @@ def test_exact_orbits_of_a_sweep_in_pieces() -> None:
     assert swept(3, sweep) == alone
 
 
+@pytest.mark.slow
 def test_balances_of_a_long_sweep_in_pieces() -> None:
     sweep = "ss.forced_response(snecma_beam(), np.linspace(180, 240, 400), harmonics=127)"
     alone = swept(1, sweep)
