@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 import stickslip as ss
+from chains import in_a_row
 
 JENKINS = ss.Jenkins("x", stiffness=4e3, slip_force=1.0)
 
@@ -58,12 +59,10 @@ def jointed(rng):
     """Return a random chain with contacts of all kinds, and a mode of it."""
     size = int(rng.integers(2, 7))
     springs = 10.0 ** rng.uniform(3.5, 4.5, size + 1)
-    stiffness = np.diag(springs[:-1] + springs[1:])
-    stiffness -= np.diag(springs[1:-1], 1) + np.diag(springs[1:-1], -1)
     dofs = [f"d{i}" for i in range(size)]
     structure = ss.Structure(
         mass=np.diag(rng.uniform(0.2, 2.0, size)),
-        stiffness=stiffness,
+        stiffness=in_a_row(springs),
         damping=ss.ModalDamping(rng.choice([0.0005, 0.003, 0.01])),
         dofs=dofs,
     )

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
+from chains import in_a_row
 
 
 def mixed(seed: int) -> tuple[ss.Model, np.ndarray]:
@@ -11,8 +12,7 @@ def mixed(seed: int) -> tuple[ss.Model, np.ndarray]:
     rng = np.random.default_rng(seed)
     n = int(rng.integers(2, 9))
     if rng.random() < 0.5:
-        k = 10 ** rng.uniform(3, 5, n + 1)
-        stiffness = np.diag(k[:-1] + k[1:]) - np.diag(k[1:-1], 1) - np.diag(k[1:-1], -1)
+        stiffness = in_a_row(10 ** rng.uniform(3, 5, n + 1))
         mass = np.diag(10 ** rng.uniform(-0.5, 0.5, n))
     else:
         a = rng.normal(size=(n, n))
@@ -112,10 +112,8 @@ def test_modal_coordinates_are_observed_if_they_are_named() -> None:
 def many_contacts(slipping: int) -> ss.Model:
     """A chain of 48 masses, each with a contact to ground, few of which slip."""
     springs = 1e4 * np.random.default_rng(0).uniform(0.8, 1.2, 49)
-    off = np.diag(springs[1:-1], 1)
-    stiffness = np.diag(springs[:-1] + springs[1:]) - off - off.T
     names = [f"x{i}" for i in range(48)]
-    chain = ss.Structure(np.eye(48), stiffness, ss.ModalDamping(5e-3), names)
+    chain = ss.Structure(np.eye(48), in_a_row(springs), ss.ModalDamping(5e-3), names)
     contacts = [
         ss.Jenkins(name, stiffness=1e4, slip_force=0.3 if i < slipping else 1e3)
         for i, name in enumerate(names)

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
+from chains import in_a_row
 
 
 def three_masses(damping=0.005, slip_force=1.0, force=1.0):
@@ -205,11 +206,8 @@ NARROW = {  # masses, springs from ground to ground, contacts, loaded DOF, obser
 
 def narrow_chain(name, slip_force):
     masses, springs, contacts, (loaded, _) = NARROW[name]
-    springs = np.array(springs)
-    stiffness = np.diag(springs[:-1] + springs[1:])
-    stiffness -= np.diag(springs[1:-1], 1) + np.diag(springs[1:-1], -1)
     dofs = [f"q{i}" for i in range(len(masses))]
-    structure = ss.Structure(np.diag(masses), stiffness, None, dofs)
+    structure = ss.Structure(np.diag(masses), in_a_row(springs), None, dofs)
     jenkins = [
         ss.Jenkins(*ends, stiffness=own, slip_force=slip_force, name=f"c{i}")
         for i, (ends, own) in enumerate(contacts)

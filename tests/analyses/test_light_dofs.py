@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
+from chains import in_a_row
 
 DAMPING = ["modal", "rayleigh", "each dof", "between dofs"]
 
@@ -17,8 +18,7 @@ def chain(seed: int, mass: float, damping: str) -> ss.Model:
     masses[light] = mass
 
     def springs(low: float, high: float) -> np.ndarray:
-        k = 10 ** rng.uniform(low, high, size + 1)
-        return np.diag(k[:-1] + k[1:]) - np.diag(k[1:-1], 1) - np.diag(k[1:-1], -1)
+        return in_a_row(10 ** rng.uniform(low, high, size + 1))
 
     stiffness = springs(3.0, 5.0)
     laws = {

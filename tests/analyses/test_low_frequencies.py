@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
+from chains import in_a_row
 
 
 def nearly_rigid(seed: int) -> tuple[ss.Model, np.ndarray]:
@@ -15,7 +16,7 @@ def nearly_rigid(seed: int) -> tuple[ss.Model, np.ndarray]:
     k = 10 ** rng.uniform(3, 6, size + 1)
     if rng.random() < 0.5:
         k[-1] = 0
-    stiffness = np.diag(k[:-1] + k[1:]) - np.diag(k[1:-1], 1) - np.diag(k[1:-1], -1)
+    stiffness = in_a_row(k)
     dofs = [f"d{i}" for i in range(size)]
     damping = ss.ModalDamping(10 ** rng.uniform(-3.3, -1.3))
     chain = ss.Structure(np.diag(mass), stiffness, damping, dofs=dofs)

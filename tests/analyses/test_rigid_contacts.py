@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
+from chains import in_a_row
 
 
 def chain(size: int, contacts: int, stiffness: float, *, proportional: bool) -> ss.Model:
@@ -43,8 +44,7 @@ def test_rigid_contacts_hold_their_dofs_or_are_refused(
 def sliding(size: int, contacts: int, ratio: float) -> ss.Model:
     """Return an uneven chain whose contacts, so many times as stiff, slip at low frequencies."""
     rng = np.random.default_rng(0)
-    k = 1e4 * rng.uniform(0.8, 1.2, size + 1)
-    springs = np.diag(k[:-1] + k[1:]) - np.diag(k[1:-1], 1) - np.diag(k[1:-1], -1)
+    springs = in_a_row(1e4 * rng.uniform(0.8, 1.2, size + 1))
     dofs = [f"x{number}" for number in range(size)]
     structure = ss.Structure(np.eye(size), springs, ss.ModalDamping(1e-2), dofs)
     places = np.linspace(1, size - 2, contacts).astype(int) if contacts > 1 else [size // 2]

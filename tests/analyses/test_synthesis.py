@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
+from chains import in_a_row
 from joints import chain
 
 
@@ -12,8 +13,7 @@ def random_chain(seed):
     rng = np.random.default_rng([5, seed])
     size = int(rng.integers(1, 5))
     springs = 10.0 ** rng.uniform(3.5, 4.5, size + 1)
-    stiffness = np.diag(springs[:-1] + springs[1:])
-    stiffness -= np.diag(springs[1:-1], 1) + np.diag(springs[1:-1], -1)
+    stiffness = in_a_row(springs)
     dofs = [f"d{place}" for place in range(size)]
     damping = ss.ModalDamping(rng.choice([0.001, 0.003, 0.01]))
     structure = ss.Structure(np.diag(rng.uniform(0.3, 2.0, size)), stiffness, damping, dofs)

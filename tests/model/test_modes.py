@@ -5,15 +5,14 @@ import pytest
 from scipy.linalg import eigh
 
 import stickslip as ss
+from chains import in_a_row
 from stickslip.model.structure import Structure
 
 RNG = np.random.default_rng(5)
 
 
 def chain(size, springs=1e6, mass=0.1):
-    k = np.broadcast_to(springs, size + 1)
-    stiffness = np.diag(k[:-1] + k[1:]) - np.diag(k[1:-1], 1) - np.diag(k[1:-1], -1)
-    return mass * np.eye(size), stiffness
+    return mass * np.eye(size), in_a_row(np.broadcast_to(springs, size + 1))
 
 
 def joint(size, decades):
