@@ -59,6 +59,38 @@ def test_columns_that_can_be_misread_are_refused(tmp_path, text, says):
     assert says in str(error.value)
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        "2e4,-1.5,0\n-1.5,3,-7\n0,-7,4\n",
+        "\ufeff2e4;-1,5;0;\n-1,5;3;-7;\n0;-7;4;\n",
+        "% K [N/m]\n2e4  -1.5 0\n\n-1.5 3 -7\n0 -7\t4",
+        "x, y, z\n2D4, -1.5, 0\n-1.5, 3, -7\n0, -7, 4\n",
+    ],
+)
+def test_a_matrix_in_rows_of_text(tmp_path, text):
+    (tmp_path / "K.csv").write_text(text, encoding="utf-8")
+    assert read_matrix(tmp_path / "K.csv").tolist() == [[2e4, -1.5, 0], [-1.5, 3, -7], [0, -7, 4]]
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("1,2\n3\n", "line 2: 1 number; give a row of numbers per line"),
+        ("1,2\n3,4,5\n", "line 2: 3 numbers; give"),
+        ("1,2\n3,\n4,5\n", "line 2: 1 number; give"),
+        ("1;2\n3;4 N/m\n", "line 2: '4 N/m' is no"),
+        (",x,y\nx,1,2\ny,2,4\n", "no line with a row of numbers"),
+        ("1,nan\nnan,4\n", "finite"),
+    ],
+)
+def test_rows_of_text_that_are_no_matrix_are_refused(tmp_path, text, says):
+    (tmp_path / "K.csv").write_text(text)
+    with pytest.raises(ss.ModelError, match=r"K\.csv") as error:
+        read_matrix(tmp_path / "K.csv")
+    assert says in str(error.value)
+
+
 @pytest.mark.parametrize(("kind", "mirrored"), [("UNSYMMETRIC", 0.0), ("SYMMETRIC", 5.0)])
 def test_abaqus_says_whether_a_triangle_is_all(tmp_path, kind, mirrored):
     file = tmp_path / "k.mtx"

@@ -1,9 +1,10 @@
-"""Curves that tests have written: text files of two columns, or three."""
+"""Columns of numbers in text files: curves that tests have written, and small matrices."""
 
 from __future__ import annotations
 
 import re
 from os import PathLike
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,28 +43,40 @@ def read_curve(path: str | PathLike[str], columns: int = 2) -> tuple[NDArray[np.
     ModelError
         If the file is missing, or a line behind the first number has too few.
     """
-    file = file_path(path, "curve")
+    rows = _rows(file_path(path, "curve"), columns)
+    return tuple(np.ascontiguousarray(one) for one in np.array(rows).T)
+
+
+def read_table(file: Path) -> NDArray[np.float64]:
+    """Read a matrix, a row per line, all of them as long; see `read_curve`."""
+    return np.array(_rows(file, None))
+
+
+def _rows(file: Path, columns: int | None) -> list[list[float]]:
+    """Return the first columns of all lines, or all of them."""
     rows: list[list[float]] = []
+    wanted = "a row of numbers" if columns is None else _WORDS[columns]
     with readable(file, "a table of numbers"):
         text = file.read_text(encoding="utf-8-sig")
     for number, line in enumerate(text.splitlines(), 1):
         fields = _fields(line.strip())
         if not line.strip() or line.strip()[0] in "#%":
             continue
+        size = columns or len(rows[0] if rows else fields)
         try:
-            if len(fields) < columns:
-                raise ValueError(f"{len(fields)} number")
-            if not all(fields[:columns]):
+            if len(fields) < size or (columns is None and len(fields) > size):
+                raise ValueError(f"{len(fields)} number" + "s" * (len(fields) != 1))
+            if not all(fields[:size]):
                 raise ValueError("an empty field")
-            rows.append([_number(field) for field in fields[:columns]])
+            rows.append([_number(field) for field in fields[:size]])
         except ValueError as error:
-            if rows or not _is_heading(line, columns):
+            if rows or not _is_heading(line, size):
                 raise ModelError(
-                    f"{file}: line {number}: {error}; give {_WORDS[columns]} per line"
+                    f"{file}: line {number}: {error}; give {wanted} per line"
                 ) from None
     if not rows:
-        raise ModelError(f"{file}: no line with {_WORDS[columns]}; give numbers in columns")
-    return tuple(np.ascontiguousarray(one) for one in np.array(rows).T)
+        raise ModelError(f"{file}: no line with {wanted}; give numbers in columns")
+    return rows
 
 
 def _fields(line: str) -> list[str]:

@@ -22,6 +22,7 @@ from stickslip.checks import (
 from stickslip.errors import ModelError
 from stickslip.io.abaqus import read_abaqus, read_calculix, read_calculix_dofs
 from stickslip.io.ansys import read_ansys
+from stickslip.io.curve import read_table
 from stickslip.io.dmig import read_dmig
 from stickslip.io.entries import Labelled, require_size
 from stickslip.io.harwell_boeing import read_harwell_boeing
@@ -64,7 +65,8 @@ def read_matrix(
         `.matrix` (Harwell-Boeing and Rutherford-Boeing, as of ANSYS' HBMAT, whose `.mapping` may
         lie beside it to name the rows), `.mmf` (MatrixMarket of ANSYS' EXPORT), `.op4` (Nastran's
         OUTPUT4), `.pch`, `.dmig` (Nastran's DMIG), `.sti`, `.mas` (CalculiX, with the `.dof` beside
-        it), `.full` (ANSYS, with the package ansys-mapdl-reader).
+        it), `.full` (ANSYS, with the package ansys-mapdl-reader), `.csv` (rows of numbers,
+        between commas, semicolons, tabs or spaces).
     key : str, optional
         Name of the matrix in a file that holds several (`.npz`, `.mat`, `.op4`, `.pch`; "stiffness"
         or "mass" in `.full` and substructures of Abaqus); it may be left out if there is only one.
@@ -200,4 +202,5 @@ _READERS: dict[str, _Reader] = {
     **dict.fromkeys((".pch", ".dmig"), read_dmig),
     **dict.fromkeys((".sti", ".mas"), _only(read_calculix)),
     ".full": read_ansys,
+    ".csv": _only(read_table),
 }
