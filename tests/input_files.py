@@ -82,6 +82,7 @@ def make(folder: Path) -> dict[str, Callable[[Path], object]]:
     for symmetry in ("general", "symmetric"):
         scipy.io.mmwrite(folder / f"{symmetry}.mtx", band, symmetry=symmetry, precision=17)
         scipy.io.mmwrite(folder / f"array-{symmetry}.mtx", K, symmetry=symmetry, precision=17)
+    np.savetxt(folder / "rows.csv", K, delimiter=";")
     (folder / "packed.mtx.gz").write_bytes(gzip.compress((folder / "symmetric.mtx").read_bytes()))
     scipy.io.hb_write(folder / "harwell.rua", band)
     lower = [(i, j) for i in range(9) for j in range(i + 1)]

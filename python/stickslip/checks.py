@@ -88,11 +88,18 @@ def _near(name: str, names: Sequence[str]) -> list[str]:
     same = [one for one in names if _same_body(body, one.split(".")[:-1])]
     # "exact-response" is rather "exact" than "forced-response".
     parts = [one for one in same if f"{name}-".startswith(f"{one}-")]
-    near = parts or difflib.get_close_matches(name, same, n=1)
+    near = parts or close(name, same)
     if near or body:
         return near
     ends = [one for one in names if one.endswith(f".{last}")]
     return ends if len(ends) <= _FEW else []
+
+
+def close(name: str, names: Iterable[str], cutoff: float = 0.6) -> list[str]:
+    """Return the name that is meant, by its letters rather than by their case; none if none is."""
+    known = list(names)
+    near = [one for one in known if one.casefold() == name.casefold()]
+    return near or difflib.get_close_matches(name, known, 1, cutoff)
 
 
 def _same_body(given: Sequence[str], known: Sequence[str]) -> bool:

@@ -5,8 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from stickslip.checks import brief, choice, file_path, members, whole_number
+from stickslip.checks import brief, choice, file_path, members, unknown, whole_number
 from stickslip.errors import ModelError
+from stickslip.study.matrices import neighbour
 
 
 class Mute:
@@ -48,6 +49,15 @@ def test_a_choice_is_one_of_its_names(value, message):
     assert choice("newton", "method", ["newton", "picard"]) == "newton"
     with pytest.raises(ModelError, match=message):
         choice(value, "method", ["newton", "picard"])
+
+
+def test_names_in_other_letters_are_the_nearest(tmp_path):
+    assert unknown("key", "m", ["M", "K"]) == "unknown key 'm'; did you mean 'M'?"
+    assert unknown("dof", "ROOT", ["rot", "root"]).endswith("did you mean 'root'?")
+    for name in ("M.csv", "K.csv"):
+        (tmp_path / name).touch()
+    assert neighbour(tmp_path / "k.csv") == "; did you mean 'K.csv'?"
+    assert neighbour(tmp_path / "m.csv") == "; did you mean 'M.csv'?"
 
 
 def test_paths_are_text_or_path_like(tmp_path):

@@ -130,7 +130,8 @@ def test_mat_73_of_other_programs(folder):
         ("Z", r"'Z': complex entries; give real matrices"),
         ("text", r"'text' is a char; save the matrix by itself"),
         ("a_struct", r"'a_struct' is a struct; save the matrix by itself"),
-        ("k", r"unknown key 'k'; known: 'K', 'Z', 'a_struct', 'text'"),
+        ("k", r"unknown key 'k'; did you mean 'K'"),
+        ("q", r"unknown key 'q'; known: 'K', 'Z', 'a_struct', 'text'"),
         (None, r"it holds 'K', 'Z', 'a_struct', 'text'; choose one with key"),
     ],
 )

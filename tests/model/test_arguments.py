@@ -140,6 +140,7 @@ CALLED = {
     ss.read_matrix: {"path": "a.npy"},
     ss.read_dofs: {"path": "a.pch"},
     ss.read_frf: {"path": "a.uff"},
+    ss.read_curve: {"path": "a.csv", "columns": 3},
     ss.read_mesh: {"path": "a.inp"},
     ss.write_frf: {"path": "a.uff", "functions": ss.Frf([1.0, 2.0], [1.0, 1j], "a", "b")},
     ss.merge_stores: {"target": "a.db", "sources": ["b.db"]},

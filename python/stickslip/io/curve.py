@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.checks import file_path
+from stickslip.checks import file_path, whole_number
 from stickslip.errors import ModelError
 from stickslip.io.numbers import real_field
 from stickslip.io.source import readable
@@ -43,7 +43,8 @@ def read_curve(path: str | PathLike[str], columns: int = 2) -> tuple[NDArray[np.
     ModelError
         If the file is missing, or a line behind the first number has too few.
     """
-    rows = _rows(file_path(path, "curve"), columns)
+    size = whole_number(columns, "columns", smallest=2, largest=3)
+    rows = _rows(file_path(path, "curve"), size)
     return tuple(np.ascontiguousarray(one) for one in np.array(rows).T)
 
 

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Annotated, Self
 
 import numpy as np
 from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
 
-from stickslip.checks import MatrixLike, brief, file_path, is_file, unknown
+from stickslip.checks import MatrixLike, brief, close, file_path, is_file, unknown
 from stickslip.errors import EntryError, ModelError
 from stickslip.model.structure import DampingLaw, ModalDamping, Rayleigh
 from stickslip.settings.entries import (
@@ -209,5 +208,5 @@ def neighbour(path: Path) -> str:
     folder = path.parent
     if not folder.is_dir():
         return f"; there is no folder {folder} either"
-    near = get_close_matches(path.name, [file.name for file in folder.iterdir()], 1, 0.75)
+    near = close(path.name, (file.name for file in folder.iterdir()), 0.75)
     return f"; did you mean '{near[0]}'?" if near else ""
