@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from stickslip import _core
+from stickslip.analyses.doubts import structure_doubts
 from stickslip.analyses.texts import told
-from stickslip.analyses.uniqueness import structure_doubts
 from stickslip.model import Model
 from stickslip.results.diagnostic import Diagnostic, present
 from stickslip.results.limit_cycles import CycleArrays

@@ -6,10 +6,10 @@ import numpy as np
 
 from stickslip import _core
 from stickslip.analyses.arguments import require_lowest
+from stickslip.analyses.doubts import structure_doubts
 from stickslip.analyses.mode_bounds import mode_bounds
 from stickslip.analyses.run import Progress, Run, refusals
 from stickslip.analyses.texts import told
-from stickslip.analyses.uniqueness import structure_doubts
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.results.diagnostic import Diagnostic, missed_tolerances, present

@@ -9,8 +9,8 @@ from stickslip.analyses.assumptions import (
     bounds_of,
     direct_assumption,
 )
+from stickslip.analyses.doubts import doubts, mistuning_unit, structure_doubts
 from stickslip.analyses.texts import told
-from stickslip.analyses.uniqueness import doubts, mistuning_unit, structure_doubts
 from stickslip.checks import listed
 from stickslip.model import Model
 from stickslip.results.arrays import Bool

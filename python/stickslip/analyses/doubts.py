@@ -1,0 +1,82 @@
+"""What of a model puts its motions in doubt: more than one solution, or a slip of sign or unit."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from stickslip.analyses.texts import told
+from stickslip.analyses.uniqueness import instability, uniqueness
+from stickslip.disk.mistuned import MistunedDisk
+from stickslip.model import Coulomb, Model
+from stickslip.model.structure import ModalDamping
+from stickslip.results.diagnostic import Diagnostic
+
+_ROUND, _DEGREES = 15.0, 5.0
+"""Phases from the first on that are multiples of the second are taken for degrees."""
+_FRICTION = 3.0, 100.0
+"""Coefficients between these look like percents; larger ones are those of contacts that stick."""
+_PERCENTS = 0.5
+"""Deviations of blades from here on are taken for percents: those of one disk are smaller."""
+
+
+def doubts(model: Model) -> tuple[Diagnostic | None, ...]:
+    """Say what of laws, damping and stiffness puts a steady motion in doubt."""
+    return uniqueness(model), *structure_doubts(model)
+
+
+def structure_doubts(model: Model) -> tuple[Diagnostic | None, ...]:
+    """Say what of a structure, its contacts and forces looks like a slip of sign or unit."""
+    found = (_overdamped(model), _degrees(model), _mistuning(model), _friction(model))
+    return instability(model), *found
+
+
+def _degrees(model: Model) -> Diagnostic | None:
+    """Say that the phase of a force looks like one in degrees.
+
+    Phases in radians of that size come of waves, as multiples of pi: they are no round numbers.
+    """
+    for position, force in enumerate(model.forces, start=1):
+        if abs(force.phase) >= _ROUND and force.phase % _DEGREES == 0.0:
+            return told("phase-unit", force=position, dof=force.dof, phase=force.phase)
+    return None
+
+
+def _overdamped(model: Model) -> Diagnostic | None:
+    law = model.damping_law
+    if not isinstance(law, ModalDamping):
+        return None
+    ratios = law.ratio if isinstance(law.ratio, tuple) else (law.ratio,)
+    ratio = float(max(ratios, default=0.0))
+    if ratio < 1.0:
+        return None
+    return told("overdamped", ratio=ratio, _percent=0.01 * ratio)
+
+
+def mistuning_unit(deviation: float, what: str) -> Diagnostic | None:
+    """Say that a deviation of blades looks like one in percent."""
+    if abs(deviation) < _PERCENTS:
+        return None
+    return told("mistuning-unit", _what=what, deviation=deviation, _percent=0.01 * deviation)
+
+
+def _mistuning(model: Model) -> Diagnostic | None:
+    if not isinstance(model, MistunedDisk):
+        return None
+    for name in ("stiffness", "mass"):
+        tuned, *sizes = (
+            np.linalg.norm(getattr(one, name)) for one in (model.disk.structure, *model.blades)
+        )
+        deviations = np.array(sizes) / tuned - 1.0 if tuned else np.zeros(1)
+        blade = int(np.abs(deviations).argmax())
+        if found := mistuning_unit(deviations[blade], f"The {name} of blade {blade}"):
+            return found
+    return None
+
+
+def _friction(model: Model) -> Diagnostic | None:
+    least, most = _FRICTION
+    for name, contact in zip(model.contact_names, model.contacts, strict=True):
+        friction = float(np.max(contact.friction)) if isinstance(contact, Coulomb) else 0.0
+        if least <= friction <= most:
+            return told("friction-unit", contact=name, friction=friction, _percent=0.01 * friction)
+    return None
