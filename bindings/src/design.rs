@@ -3,6 +3,7 @@
 use crate::arrays::{series, table, Array3};
 use crate::columns::{uniqueness_code, Columns};
 use crate::problem::Problem;
+use crate::response::keeping;
 use crate::settings::{evaluated, get, harmonic, measure, residual, variation};
 use crate::watch;
 use numpy::{Complex64, PyArray2, PyUntypedArrayMethods as _};
@@ -108,8 +109,17 @@ pub fn peak_map(
         Ok((Arc::clone(&problem.model), harmonic(&settings)?, dof))
     };
     let cells: Vec<Cell> = cells.into_iter().map(cell).collect::<PyResult<_>>()?;
-    let map = move |look: &dyn Fn(f64) -> bool| design::peak_map(&cells, &grid, threads, look);
-    let peaks = watch::computed(py, progress, map)?;
+    let count = cells.len();
+    let peaks = keeping(
+        py,
+        progress,
+        move |kept, look| design::peak_map(&cells, &grid, threads, kept, look),
+        |found: Vec<Arc<(usize, CellPeak)>>| {
+            let mut peaks = vec![CellPeak::NOT_COMPUTED; count];
+            found.iter().for_each(|cell| peaks[cell.0] = cell.1);
+            Some(peaks)
+        },
+    )?;
     let told = |peak: &CellPeak| (peak.amplitude, peak.omega, peak.harmonics, peak.status as u8);
     Ok(peaks.iter().map(told).collect())
 }

@@ -1,5 +1,6 @@
 """Peaks over two parameters of a design, and responses along a speed that changes the model."""
 
+import time
 from dataclasses import replace
 
 import numpy as np
@@ -223,6 +224,39 @@ def test_ctrl_c_keeps_the_cells_that_are_done():
     assert whole.amplitude[0, 0] == kept.amplitude[0, 0]
     assert not whole.interrupted
     assert shares[-1] == 1.0
+
+
+class Slow(ss.ContactLaw):
+    """A spring whose steps take their time once an analysis runs."""
+
+    pause = 0.0
+
+    def stiffness(self):
+        return [[1e3]]
+
+    def step(self, before, after, state):
+        time.sleep(self.pause)
+        return 1e3 * after, state, ss.Tangents([[1.0]], [[0.0]], [[0.0]], [[0.0]], [[1e3]])
+
+
+def test_cells_that_are_done_are_kept_where_the_last_one_cannot_be_stopped(monkeypatch):
+    """A step of a law, as a factorisation, asks nobody whether to go on."""
+
+    def build(mass, slow):
+        body = ss.Structure([[mass]], [[1e4]], ss.ModalDamping(0.01), ["x"])
+        quick = ss.Jenkins("x", stiffness=1e3, slip_force=1.0)
+        return ss.Model(body, [Slow(["x"]) if slow else quick], [ss.Force("x", 1.0)])
+
+    def press(share):
+        monkeypatch.setattr(Slow, "pause", 2.0)
+        if share > 0.0:
+            raise KeyboardInterrupt
+
+    values = {"mass": [1.0], "slow": [0.0, 1.0]}
+    span = {"dof": "x", "omega": (60.0, 140.0), "threads": 1}
+    with pytest.raises(ss.Interrupted, match="interrupted after 1 of 2 cells") as caught:
+        ss.design_map(build, values, **span, progress=press)
+    assert caught.value.result.status[0] == ("converged", "not computed")
 
 
 def test_an_undamped_mode_that_no_damper_sees_ends_its_cells_alone() -> None:

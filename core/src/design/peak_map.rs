@@ -9,7 +9,7 @@
 
 use super::peak::{climbed, PeakQuery, OF_STUDY};
 use crate::balance::{
-    sweep, ForcedBalance, HarmonicChoice, Point, PointStatus, Progress, Settings,
+    keep, sweep, ForcedBalance, HarmonicChoice, Kept, Point, PointStatus, Progress, Settings,
 };
 use crate::fourier::{amplitude, Harmonics, Measure, SampleTable};
 use crate::model::Model;
@@ -48,13 +48,16 @@ pub struct CellPeak {
 }
 
 impl CellPeak {
+    /// A peak that was not computed.
+    pub const NOT_COMPUTED: Self = Self::missing(0, PointStatus::NotComputed);
+
     const fn missing(harmonics: usize, status: PointStatus) -> Self {
         Self { omega: f64::NAN, amplitude: f64::NAN, harmonics, status }
     }
 }
 
 /// Finds the peaks of all cells over a grid of frequencies, in parallel threads, to the tolerance of
-/// their settings.
+/// their settings; `kept` takes them with the numbers of their cells as they are found.
 ///
 /// # Errors
 /// No thread, or as for a solution.
@@ -62,6 +65,7 @@ pub fn peak_map(
     cells: &[Cell],
     grid: &[f64],
     threads: usize,
+    kept: &Kept<(usize, CellPeak)>,
     progress: &Progress<'_>,
 ) -> Result<Vec<CellPeak>, Error> {
     let pool = rayon::ThreadPoolBuilder::new()
@@ -70,8 +74,7 @@ pub fn peak_map(
         .map_err(|error| Error::shape("threads", "as many as the system grants", error))?;
     let stop = AtomicBool::new(false);
     let (sender, receiver) = channel();
-    let mut found: Vec<Result<CellPeak, Error>> =
-        vec![Ok(CellPeak::missing(0, PointStatus::NotComputed)); cells.len()];
+    let mut found: Vec<Result<CellPeak, Error>> = vec![Ok(CellPeak::NOT_COMPUTED); cells.len()];
     pool.in_place_scope_fifo(|scope| {
         for (index, cell) in cells.iter().enumerate() {
             let (sender, stop) = (sender.clone(), &stop);
@@ -87,6 +90,9 @@ pub fn peak_map(
         loop {
             match receiver.recv_timeout(PATIENCE) {
                 Ok((index, peak)) => {
+                    if let Ok(peak) = peak {
+                        keep(Some(kept), &Arc::new((index, peak)));
+                    }
                     found[index] = peak;
                     done += 1;
                 }
@@ -128,7 +134,7 @@ impl Search<'_> {
         if (self.progress)(0.0) {
             found
         } else {
-            Ok(CellPeak::missing(0, PointStatus::NotComputed))
+            Ok(CellPeak::NOT_COMPUTED)
         }
     }
 
@@ -137,8 +143,7 @@ impl Search<'_> {
         let (model, settings, dof) = self.cell;
         let quest = PeakQuery { groups: vec![vec![*dof]], measure: Measure::HalfRange, span };
         let found = climbed(model, *settings, &quest, OF_STUDY, None, self.progress)?;
-        let missing = CellPeak::missing(0, PointStatus::NotComputed);
-        Ok(found.summits.first().map_or(missing, |peak| CellPeak {
+        Ok(found.summits.first().map_or(CellPeak::NOT_COMPUTED, |peak| CellPeak {
             omega: if peak.status.is_solved() { peak.omega } else { f64::NAN },
             amplitude: peak.amplitude,
             harmonics: peak.harmonics,
