@@ -146,7 +146,7 @@ impl ForcedBalance<'_> {
         // Without an observed DOF there is nothing whose error could be estimated.
         if status == PointStatus::Converged && self.estimated && !self.observe.is_empty() {
             let start = std::time::Instant::now();
-            let estimated = self.estimate(equations, &x, &mut point)?;
+            let estimated = self.estimate(equations, &x, &mut point, false)?;
             self.profile.estimate += start.elapsed();
             if !estimated {
                 return Ok(self.not_computed(omega));

@@ -62,11 +62,11 @@ impl ForcedBalance<'_> {
                     Decision::Limit(limit) => {
                         let exact = self.orbit_beyond(&point, limit);
                         point.status = limit;
-                        return Ok(self.ended(exact.unwrap_or(point), resolution, &climb));
+                        return self.ended(exact.unwrap_or(point), resolution, &climb);
                     }
                     Decision::More(more) => {
                         if let Some(last) = self.instead_of(more, &point) {
-                            return Ok(self.ended(last, resolution, &climb));
+                            return self.ended(last, resolution, &climb);
                         }
                         start.clone_from(&point.unknowns);
                         climb.below = Some(point);
@@ -75,7 +75,7 @@ impl ForcedBalance<'_> {
                 },
                 PointStatus::Stalled => match self.past(&point, resolution, &mut climb) {
                     Way::On(next) => next,
-                    Way::End(last) => return Ok(self.ended(*last, resolution, &climb)),
+                    Way::End(last) => return self.ended(*last, resolution, &climb),
                 },
                 _ => return Ok(point),
             };
@@ -108,11 +108,22 @@ impl ForcedBalance<'_> {
     }
 
     /// A point that ends the climb; the next one begins with the harmonics at which it ended.
-    fn ended(&mut self, mut point: Point, at: Resolution, climb: &Climb) -> Point {
+    fn ended(&mut self, mut point: Point, at: Resolution, climb: &Climb) -> Result<Point, Error> {
         let dear = point.status == PointStatus::EffortLimit;
         self.control.stay(if dear { point.resolution() } else { at });
         point.iterations = climb.iterations;
-        point
+        self.complete_estimate(&mut point)?;
+        Ok(point)
+    }
+
+    /// Whether the sampling errors of a solution alone ask for more samples.
+    pub(super) fn lacks_samples(&mut self, point: &Point, sampling: &[f64]) -> bool {
+        if !self.control.samples_climb() {
+            return false;
+        }
+        self.scale.include(point);
+        let error = self.scale.relative(point, OF_HARMONICS, sampling.iter().copied());
+        self.control.lacking(point.resolution(), error).is_some()
     }
 
     /// What the errors of a solution ask for.

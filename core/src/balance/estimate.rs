@@ -6,6 +6,7 @@ use super::effort::Effort;
 use super::forced::ForcedBalance;
 use super::sampling::{finer_than, sampling_errors};
 use super::settings::Method;
+use super::smooth_piece::IN_A_ROW;
 use super::solution::Point;
 use super::unknowns::Unknowns;
 use crate::fourier::Harmonics;
@@ -30,24 +31,51 @@ impl ForcedBalance<'_> {
     }
 
     /// Writes the error estimate of a solution `x` of these equations; `false` if the analysis is to
-    /// end.
+    /// end. What lacks samples in any case needs no more than the error that says so, unless it is to be `whole`.
     pub(super) fn estimate(
         &mut self,
         equations: &mut Condensed<'_>,
         x: &[f64],
         point: &mut Point,
+        whole: bool,
     ) -> Result<bool, Error> {
+        let sampling = self.sampling_errors(equations, x, point)?;
+        if !whole && self.lacks_samples(point, &sampling) {
+            (point.error_estimate, point.sampling_error) = (sampling.clone(), sampling);
+            return Ok(true);
+        }
         let done = self.estimate_truncation(equations.harmonics(), x, Some(&*equations), point)?;
-        let Some(samples) = point.samples.filter(|_| done) else { return Ok(done) };
+        add_sampling(point, sampling);
+        Ok(done)
+    }
+
+    /// Completes the estimate of a point that lacked samples, but is the last one all the same.
+    pub(super) fn complete_estimate(&mut self, point: &mut Point) -> Result<(), Error> {
+        let lacks = point.samples.is_some() && point.error_estimate == point.sampling_error;
+        let Some(solution) = point.unknowns.clone().filter(|_| lacks && point.is_solved()) else {
+            return Ok(());
+        };
+        let sampling = std::mem::take(&mut point.sampling_error);
+        self.estimate_truncation(&solution.harmonics, &solution.values, None, point)?;
+        add_sampling(point, sampling);
+        Ok(())
+    }
+
+    /// What a march through more samples would change in a solution; nothing of laws that are evaluated as they
+    /// are.
+    fn sampling_errors(
+        &mut self,
+        equations: &mut Condensed<'_>,
+        x: &[f64],
+        point: &Point,
+    ) -> Result<Vec<f64>, Error> {
+        let Some(samples) = point.samples else { return Ok(vec![0.0; self.observe.len()]) };
         if self.settings.method != Method::Newton {
             // Broyden's method leaves no tangent at the solution.
             equations.residual(x, &mut vec![0.0; x.len()]);
         }
         let finer = self.evaluated(Some(finer_than(samples)))?;
-        point.sampling_error = sampling_errors(equations, &finer, x, self.observe, point)?;
-        let errors = point.error_estimate.iter_mut().zip(&point.sampling_error);
-        errors.for_each(|(error, sampling)| *error += sampling);
-        Ok(true)
+        sampling_errors(equations, &finer, x, self.observe, point)
     }
 
     /// Writes what the discarded harmonics could change in a solution `x`, of these equations if
@@ -68,10 +96,12 @@ impl ForcedBalance<'_> {
         let (half_wave, observed) = (harmonics.half_wave(), self.observe.len());
         let given = self.evaluated(None)?;
         let effort = Effort::new(&given, half_wave, slipping, observed);
-        // Where harmonics are chosen, every estimate decides by itself. Points of a curve whose frequency is
+        // Where harmonics are chosen, every estimate decides by itself; samples are chosen by their own errors. Points of a curve whose frequency is
         // unknown take more than their steps.
-        let fixed = self.control.is_fixed();
-        let counts = fixed && effort.keeps_account() && solved.is_none_or(|solved| !solved.slopes);
+        let fixed = self.control.has_given_harmonics();
+        let counts = self.control.is_fixed()
+            && effort.keeps_account()
+            && solved.is_none_or(|solved| !solved.slopes);
         let earned = counts.then(|| effort.earned(harmonics.highest()));
         let credit = self.neighbour.credit(point, earned);
         let whole = Extension::new(&effort, harmonics, point.omega, credit);
@@ -79,7 +109,11 @@ impl ForcedBalance<'_> {
         let solution = Unknowns { harmonics: harmonics.clone(), values: x.to_vec() };
         if follows {
             let (discarded, of) = (whole.discarded(harmonics), self.model.compliance());
-            if let Some(errors) = self.neighbour.piece.continued(point, &solution, of, discarded) {
+            // As many points go on as solutions cost what an estimate does; all that may of a ring.
+            let cost = whole.account.of(false) / effort.earned(harmonics.highest());
+            let in_a_row = if counts { IN_A_ROW } else { cost.ceil().max(1.0) as usize };
+            let piece = &mut self.neighbour.piece;
+            if let Some(errors) = piece.continued(point, &solution, of, discarded, in_a_row) {
                 point.error_estimate = errors;
                 return Ok(true);
             }
@@ -137,4 +171,10 @@ impl ForcedBalance<'_> {
         }
         Ok(Some(found))
     }
+}
+
+/// Adds the sampling error to an estimate.
+fn add_sampling(point: &mut Point, sampling: Vec<f64>) {
+    point.error_estimate.iter_mut().zip(&sampling).for_each(|(error, own)| *error += own);
+    point.sampling_error = sampling;
 }

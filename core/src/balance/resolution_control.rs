@@ -77,6 +77,11 @@ impl ResolutionControl {
         self.settings.harmonics != HarmonicChoice::Auto && !self.samples_climb()
     }
 
+    /// Whether harmonics are given: no estimate chooses them.
+    pub(super) fn has_given_harmonics(&self) -> bool {
+        self.settings.harmonics != HarmonicChoice::Auto
+    }
+
     /// Whether the number of samples is chosen.
     pub(super) fn samples_climb(&self) -> bool {
         self.settings.evaluation == Evaluation::Marched(SampleChoice::Auto)
@@ -103,8 +108,7 @@ impl ResolutionControl {
         if let Some(samples) = at.samples.filter(|_| self.samples_climb()) {
             self.level.samples = samples;
             if of_samples > target {
-                let finer = self.allowed(at.harmonics, finer(at.samples, of_samples / target));
-                if finer != at {
+                if let Some(finer) = self.lacking(at, of_samples) {
                     return Decision::More(finer);
                 }
                 // More harmonics bring the rest of the error down all the same.
@@ -128,6 +132,16 @@ impl ResolutionControl {
         let generous = left <= GENEROUS * tolerance;
         self.level.order = (order - usize::from(generous && order > 0)).max(self.lowest);
         decision
+    }
+
+    /// The samples that a solution lacks by their error alone, if they may be had.
+    pub(super) fn lacking(&self, at: Resolution, of_samples: f64) -> Option<Resolution> {
+        let target = OF_SAMPLES * self.settings.tolerance;
+        if !self.samples_climb() || at.samples.is_none() || of_samples <= target {
+            return None;
+        }
+        let finer = self.allowed(at.harmonics, finer(at.samples, of_samples / target));
+        Some(finer).filter(|finer| *finer != at)
     }
 
     /// A level more of all that is chosen automatically, if there is one.

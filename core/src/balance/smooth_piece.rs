@@ -15,10 +15,8 @@ use std::ops::Range;
 const NEAR: f64 = 0.01;
 /// Farthest point, over the distance of the two before it.
 const STEPS: f64 = 1.01;
-/// Points in a row that go on, …
-const IN_A_ROW: usize = 1;
-/// … and on a ring, whose estimates take longer beside its solutions.
-const IN_A_ROW_OF_RING: usize = 3;
+/// Most points in a row that go on.
+pub(super) const IN_A_ROW: usize = 3;
 /// Change of the motion of a contact, apart from its phase and relative to it, up to which it is the same.
 const SAME_MOTION: f64 = 0.25;
 /// The same of the share of the period in which it slips.
@@ -97,20 +95,21 @@ impl SmoothPiece {
         (self.last, self.went_on) = (Some(point), 0);
     }
 
-    /// The estimate of a point that lies on the piece; nothing if it asks for its own.
+    /// The estimate of a point that lies on the piece; nothing if it asks for its own, as it does behind so
+    /// many `in_a_row` that did without.
     pub(super) fn continued(
         &mut self,
         point: &Point,
         solution: &Unknowns,
         compliance: &dyn Compliance,
         discarded: Range<usize>,
+        in_a_row: usize,
     ) -> Option<Vec<f64>> {
         let ((omega, errors), last) = self.before.as_ref().zip(self.last.as_ref())?;
         let (behind, ahead) = (last.omega - omega, point.omega - last.omega);
         let near = ahead.abs() <= NEAR * last.omega && errors.len() == last.errors.len();
         let share = ahead / behind;
-        let in_a_row = if compliance.ring().is_some() { IN_A_ROW_OF_RING } else { IN_A_ROW };
-        if self.went_on >= in_a_row || !near || !(share > 0.0 && share <= STEPS) {
+        if self.went_on >= in_a_row.min(IN_A_ROW) || !near || !(share > 0.0 && share <= STEPS) {
             return None;
         }
         let size = |errors: &[f64]| errors.iter().sum::<f64>();

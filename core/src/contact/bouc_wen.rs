@@ -7,7 +7,8 @@
 
 use super::parameter::number;
 use super::return_map::ReturnMapJacobian;
-use super::{ContactLaw, Parameter, Parameters};
+use super::stick_slip::at_crest;
+use super::{ContactLaw, Motion, Parameter, Parameters};
 use crate::Error;
 use faer::Mat;
 
@@ -139,6 +140,13 @@ impl ContactLaw for BoucWen {
     fn onsets(&self) -> Vec<f64> {
         let little = 0.5 * LITTLE.powf(1.0 / self.exponent);
         self.limits().iter().map(|limit| little * limit).collect()
+    }
+
+    /// As soon as it moves.
+    fn surely_slips(&self, motion: Motion<'_>) -> Option<bool> {
+        let [high, low] = at_crest(motion);
+        let yields = self.stiffness > 0.0 && self.slip_force > 0.0 && self.slip_force.is_finite();
+        (yields && high != low).then_some(true)
     }
 
     fn return_map(

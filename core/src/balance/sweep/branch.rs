@@ -250,7 +250,9 @@ impl Walk<'_, '_> {
         let Some((equations, residual)) = curve.equations(z) else { return Ok(None) };
         let mut point = equations.recover(u, self.balance.observe, PointStatus::Converged)?;
         point.samples = resolution.samples;
-        if !self.balance.observe.is_empty() && !self.balance.estimate(equations, u, &mut point)? {
+        let ended = !self.balance.observe.is_empty()
+            && !self.balance.estimate(equations, u, &mut point, true)?;
+        if ended {
             return Ok(None);
         }
         point.residual = residual;

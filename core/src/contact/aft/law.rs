@@ -243,6 +243,11 @@ impl ContactLaw for Aft<Box<dyn ContactLaw>> {
         describing(amplitude: f64) -> Option<Describing>;
     }
 
+    /// Where amplitudes show that the law slips; samples may pass over the last of it.
+    fn surely_slips(&self, motion: Motion<'_>) -> Option<bool> {
+        self.law.surely_slips(motion).filter(|slips| *slips)
+    }
+
     fn with_scaled_stiffness(&self, share: f64) -> Box<dyn ContactLaw> {
         let law = self.law.with_scaled_stiffness(share);
         Box::new(Self { law, samples: self.samples })

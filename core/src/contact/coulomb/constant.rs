@@ -56,6 +56,10 @@ impl<'a> Constant<'a> {
         }
     }
 
+    pub(super) fn surely_slips(&self) -> Option<bool> {
+        self.element.surely_slips(self.motion()).filter(|slips| *slips)
+    }
+
     pub(super) fn summary(&self, out: &mut [PointSummary]) {
         self.element.summary(self.motion(), &mut out[..1]);
     }

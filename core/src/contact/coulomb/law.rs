@@ -232,6 +232,10 @@ impl ContactLaw for Coulomb {
         (0..self.displacements()).map(|i| i == self.directions && !self.is_odd()).collect()
     }
 
+    fn surely_slips(&self, motion: Motion<'_>) -> Option<bool> {
+        self.surely_moves(motion)
+    }
+
     fn unslipped(&self, begun: &AssumedStart, displacement: &[f64]) -> Option<Unslipped> {
         self.within_cone(begun, displacement)
     }

@@ -1,6 +1,8 @@
 //! Whether a motion leaves the slider where it is: its traction stays within the cone, and it is pressed
 //! together, throughout.
 
+use super::constant::Constant;
+use super::drive::Drive;
 use super::law::{squared, Coulomb};
 use crate::contact::{AssumedStart, ContactLaw as _, Motion, Unslipped};
 
@@ -8,6 +10,14 @@ use crate::contact::{AssumedStart, ContactLaw as _, Motion, Unslipped};
 const ROUNDING: f64 = 1e-12;
 
 impl Coulomb {
+    /// See [`crate::contact::ContactLaw::surely_slips`].
+    pub(super) fn surely_moves(&self, motion: Motion<'_>) -> Option<bool> {
+        match Constant::of(self, motion) {
+            Some(constant) => constant.surely_slips(),
+            None => Drive::new(self, motion, !self.is_odd()).surely_moves().then_some(true),
+        }
+    }
+
     /// See [`crate::contact::ContactLaw::surely_unslipped`]: a series stays as near to its mean as the sum of
     /// its amplitudes.
     pub(super) fn within_bounds(
