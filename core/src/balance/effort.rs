@@ -64,6 +64,12 @@ impl<'a> Effort<'a> {
         allowance(ALLOWED_OF_RING[1], steps, self.orders(highest, [1.0, 1.0]))
     }
 
+    /// Of a solution with harmonics up to `highest` that starts close to it: one Newton step, and the evaluation of
+    /// the laws that ends it.
+    pub(super) fn closely(&self, highest: usize) -> f64 {
+        self.step(highest) + self.values(highest) + self.orders(highest, [1.0, 1.0])
+    }
+
     /// Effort of an estimate up to the last order over that of the steps of the solution up to the first.
     pub(super) fn allowed(&self, [highest, order]: [usize; 2]) -> f64 {
         let coupled = self.coupled > 1.0;

@@ -10,8 +10,11 @@ use super::smooth_piece::IN_A_ROW;
 use super::solution::Point;
 use super::unknowns::Unknowns;
 use crate::fourier::Harmonics;
-use crate::solve::System as _;
+use crate::solve::{norm, System as _};
 use crate::Error;
+
+/// Rounding of a series of forces, relative to them.
+const ROUNDING: f64 = 1e-12;
 
 impl ForcedBalance<'_> {
     /// Number of points that slip, with those beside them that their law couples to them; a law that may
@@ -90,7 +93,7 @@ impl ForcedBalance<'_> {
         point.error_estimate = vec![0.0; self.observe.len()];
         point.sampling_error = vec![0.0; self.observe.len()];
         let slipping = self.nonlinear_points(point);
-        if slipping == 0 {
+        if slipping == 0 || solved.is_some_and(|solved| leaves_springs(solved, x)) {
             return Ok(true);
         }
         let (half_wave, observed) = (harmonics.half_wave(), self.observe.len());
@@ -110,7 +113,7 @@ impl ForcedBalance<'_> {
         if follows {
             let (discarded, of) = (whole.discarded(harmonics), self.model.compliance());
             // As many points go on as solutions cost what an estimate does; all that may of a ring.
-            let cost = whole.account.of(false) / effort.earned(harmonics.highest());
+            let cost = whole.account.of(false) / effort.closely(harmonics.highest());
             let in_a_row = if counts { IN_A_ROW } else { cost.ceil().max(1.0) as usize };
             let piece = &mut self.neighbour.piece;
             if let Some(errors) = piece.continued(point, &solution, of, discarded, in_a_row) {
@@ -118,7 +121,7 @@ impl ForcedBalance<'_> {
                 return Ok(true);
             }
         }
-        let growth = if follows { self.neighbour.served(point) } else { None };
+        let growth = if follows { self.neighbour.served(point, whole.highest) } else { None };
         let extension = if growth.is_some() { whole.beside() } else { whole };
         let estimate = self.extended(&solution, solved, point, extension)?;
         let Some(Estimate { mut errors, first, keeps_states, ended_in_state, took_two }) = estimate
@@ -130,7 +133,8 @@ impl ForcedBalance<'_> {
             errors.iter_mut().zip(growth).for_each(|(error, by)| *error *= by);
         } else {
             let told = follows && keeps_states;
-            self.neighbour.learn(point, &errors, told.then_some(&first[..]));
+            let first = told.then_some(&first[..]);
+            self.neighbour.learn(point, extension.highest, &errors, first);
         }
         self.neighbour.note(point, solution, &errors);
         point.error_estimate = errors;
@@ -171,6 +175,16 @@ impl ForcedBalance<'_> {
         }
         Ok(Some(found))
     }
+}
+
+/// Whether the contact forces of a solution are those of springs but for a constant: there are no harmonics to
+/// discard.
+fn leaves_springs(solved: &Condensed<'_>, x: &[f64]) -> bool {
+    let (slots, offset) = (solved.harmonics().slots(), solved.harmonics().offset());
+    let stiffness = solved.model.contact_stiffness();
+    let slip_load = solved.slip_load();
+    let mut points = slip_load.chunks_exact(slots).zip(x.chunks_exact(slots)).enumerate();
+    points.all(|(i, (q, u))| norm(&q[offset..]) <= ROUNDING * stiffness[(i, i)] * norm(u))
 }
 
 /// Adds the sampling error to an estimate.

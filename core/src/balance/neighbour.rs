@@ -13,6 +13,9 @@ use super::unknowns::Unknowns;
 
 /// Points are beside one another up to this distance in frequency, relative to it.
 const NEAR: f64 = 0.02;
+/// Extended balances are alike up to this distance of their highest harmonics: along a curve it comes to the next
+/// one now and then, and what a second step adds to one that reaches elsewhere is another matter.
+const ALIKE: usize = 2;
 /// Points in a row that the second step at one before them serves.
 const SERVED: usize = 7;
 
@@ -21,6 +24,8 @@ const SERVED: usize = 7;
 pub(super) struct Neighbour {
     omega: f64,
     harmonics: usize,
+    /// The highest harmonic of its extended balance.
+    order: usize,
     /// Its error over that after the first step, of each observed DOF; empty where it is not known.
     growth: Vec<f64>,
     served: usize,
@@ -31,10 +36,11 @@ pub(super) struct Neighbour {
 }
 
 impl Neighbour {
-    /// By how much a whole estimate would be above the first step at a point beside.
-    pub(super) fn served(&mut self, point: &Point) -> Option<Vec<f64>> {
+    /// By how much a whole estimate up to an order would be above the first step at a point beside.
+    pub(super) fn served(&mut self, point: &Point, order: usize) -> Option<Vec<f64>> {
         let near = (self.omega - point.omega).abs() <= NEAR * self.omega;
-        let suits = near && self.harmonics == point.harmonics && self.served < SERVED;
+        let alike = self.order.abs_diff(order) <= ALIKE;
+        let suits = near && alike && self.harmonics == point.harmonics && self.served < SERVED;
         self.served += 1;
         (suits && !self.growth.is_empty()).then(|| self.growth.clone())
     }
@@ -66,10 +72,17 @@ impl Neighbour {
 
     /// Learns from a point at which an estimate was made as a whole, with the errors after its first step
     /// if they tell of others.
-    pub(super) fn learn(&mut self, point: &Point, errors: &[f64], first: Option<&[f64]>) {
+    pub(super) fn learn(
+        &mut self,
+        point: &Point,
+        order: usize,
+        errors: &[f64],
+        first: Option<&[f64]>,
+    ) {
         let growth = errors.iter().zip(first.unwrap_or_default());
         // 0 over 0 is no growth.
         self.growth = growth.map(|(whole, first)| (whole / first).max(1.0)).collect();
         (self.omega, self.harmonics, self.served) = (point.omega, point.harmonics, 0);
+        self.order = order;
     }
 }

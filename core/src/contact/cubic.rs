@@ -102,6 +102,11 @@ impl ContactLaw for Cubic {
         true
     }
 
+    /// At any motion.
+    fn surely_slips(&self, _motion: Motion<'_>) -> Option<bool> {
+        Some(self.stiffness != 0.0)
+    }
+
     fn with_scaled_stiffness(&self, share: f64) -> Box<dyn ContactLaw> {
         Box::new(Self { stiffness: share * self.stiffness })
     }

@@ -77,7 +77,11 @@ impl SampleTable {
             let mut at = 0;
             for (cos, sin) in cos.iter_mut().zip(sin) {
                 (*sin, *cos) = unit[at];
-                at = (at + order) % count;
+                // A remainder would take most of the time.
+                at += order;
+                if at >= count {
+                    at -= count;
+                }
             }
         }
         Self { harmonics, quarter, stride, cos, sin, instants: Instants::default() }
