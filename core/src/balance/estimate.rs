@@ -121,7 +121,7 @@ impl ForcedBalance<'_> {
                 return Ok(true);
             }
         }
-        let growth = if follows { self.neighbour.served(point, whole.highest) } else { None };
+        let growth = if follows { self.neighbour.served(point) } else { None };
         let extension = if growth.is_some() { whole.beside() } else { whole };
         let estimate = self.extended(&solution, solved, point, extension)?;
         let Some(Estimate { mut errors, first, keeps_states, ended_in_state, took_two }) = estimate
@@ -133,8 +133,7 @@ impl ForcedBalance<'_> {
             errors.iter_mut().zip(growth).for_each(|(error, by)| *error *= by);
         } else {
             let told = follows && keeps_states;
-            let first = told.then_some(&first[..]);
-            self.neighbour.learn(point, extension.highest, &errors, first);
+            self.neighbour.learn(point, &errors, told.then_some(&first[..]));
         }
         self.neighbour.note(point, solution, &errors);
         point.error_estimate = errors;

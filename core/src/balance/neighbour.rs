@@ -13,9 +13,6 @@ use super::unknowns::Unknowns;
 
 /// Points are beside one another up to this distance in frequency, relative to it.
 const NEAR: f64 = 0.02;
-/// Extended balances are alike up to this distance of their highest harmonics: along a curve it comes to the next
-/// one now and then, and what a second step adds to one that reaches elsewhere is another matter.
-const ALIKE: usize = 2;
 /// Points in a row that the second step at one before them serves.
 const SERVED: usize = 7;
 
@@ -24,9 +21,9 @@ const SERVED: usize = 7;
 pub(super) struct Neighbour {
     omega: f64,
     harmonics: usize,
-    /// The highest harmonic of its extended balance.
-    order: usize,
-    /// Its error over that after the first step, of each observed DOF; empty where it is not known.
+    /// Its error over that after the first step, of each observed DOF; empty where it is not known. It serves
+    /// extended balances of another reach as well: to take the second step anew wherever the reach changes takes
+    /// what an account has left for the reach itself, and estimates of rings come out more wrong.
     growth: Vec<f64>,
     served: usize,
     /// The last frequency with a slipping contact, and what the solutions so far allow the estimates after it,
@@ -36,11 +33,10 @@ pub(super) struct Neighbour {
 }
 
 impl Neighbour {
-    /// By how much a whole estimate up to an order would be above the first step at a point beside.
-    pub(super) fn served(&mut self, point: &Point, order: usize) -> Option<Vec<f64>> {
+    /// By how much a whole estimate would be above the first step at a point beside.
+    pub(super) fn served(&mut self, point: &Point) -> Option<Vec<f64>> {
         let near = (self.omega - point.omega).abs() <= NEAR * self.omega;
-        let alike = self.order.abs_diff(order) <= ALIKE;
-        let suits = near && alike && self.harmonics == point.harmonics && self.served < SERVED;
+        let suits = near && self.harmonics == point.harmonics && self.served < SERVED;
         self.served += 1;
         (suits && !self.growth.is_empty()).then(|| self.growth.clone())
     }
@@ -72,17 +68,10 @@ impl Neighbour {
 
     /// Learns from a point at which an estimate was made as a whole, with the errors after its first step
     /// if they tell of others.
-    pub(super) fn learn(
-        &mut self,
-        point: &Point,
-        order: usize,
-        errors: &[f64],
-        first: Option<&[f64]>,
-    ) {
+    pub(super) fn learn(&mut self, point: &Point, errors: &[f64], first: Option<&[f64]>) {
         let growth = errors.iter().zip(first.unwrap_or_default());
         // 0 over 0 is no growth.
         self.growth = growth.map(|(whole, first)| (whole / first).max(1.0)).collect();
         (self.omega, self.harmonics, self.served) = (point.omega, point.harmonics, 0);
-        self.order = order;
     }
 }
