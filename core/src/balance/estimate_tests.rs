@@ -4,21 +4,26 @@
 
 use super::accuracy::Extension;
 use super::effort::Effort;
+use super::forced::ForcedBalance;
 use super::neighbour::Neighbour;
+use super::settings::{Evaluation, HarmonicChoice, Resolution, SampleChoice, Settings};
 use super::solution::{Point, PointStatus};
-use crate::contact::Jenkins;
+use crate::contact::{BoucWen, ContactLaw, Jenkins};
 use crate::fourier::Harmonics;
 use crate::model::{Contact, Model};
-use crate::structure::Structure;
-use faer::{mat, Mat};
+use crate::structure::{HarmonicLoad, Structure};
+use faer::{c64, mat, Mat};
 
 fn model() -> Model {
+    under(Box::new(Jenkins::new(80.0, 0.3).unwrap()), Vec::new())
+}
+
+fn under(law: Box<dyn ContactLaw>, loads: Vec<HarmonicLoad>) -> Model {
     let (mass, damping) = (mat![[2.0, 0.1], [0.1, 1.0]], mat![[0.5, -0.1], [-0.1, 0.4]]);
     let stiffness = mat![[300.0, -100.0], [-100.0, 15000.0]];
     let structure = Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref()).unwrap();
-    let law = Box::new(Jenkins::new(80.0, 0.3).unwrap());
     let contact = Contact { law, rows: Mat::from_fn(1, 2, |_, j| [1.0, 0.0][j]) };
-    Model::new(structure, vec![contact], Vec::new()).unwrap()
+    Model::new(structure, vec![contact], loads).unwrap()
 }
 
 #[test]
@@ -46,4 +51,30 @@ fn estimates_beside_each_other_take_what_solutions_leave() {
     assert!(neighbour.credit(&at(110.0), Some(4.0)).is_infinite());
     assert!(neighbour.credit(&at(110.5), None).is_infinite());
     assert!(neighbour.credit(&at(111.0), Some(4.0)).is_infinite());
+}
+
+#[test]
+fn a_solution_that_lacks_samples_is_not_asked_for_its_harmonics() {
+    let law = Box::new(BoucWen::new(80.0, 0.3, 1.0, 0.5).unwrap());
+    let amplitude = vec![c64::new(2.0, 0.0), c64::new(0.0, 0.0)];
+    let model = under(law, vec![HarmonicLoad { harmonic: 1, amplitude }]);
+    let settings = Settings {
+        harmonics: HarmonicChoice::Fixed(1),
+        evaluation: Evaluation::Marched(SampleChoice::Auto),
+        tolerance: 1e-4,
+        ..Settings::default()
+    };
+    let mut balance = ForcedBalance::new(&model, settings, &[0, 1]).unwrap();
+    let coarse = Resolution { harmonics: 1, samples: Some(32) };
+    let mut point = balance.attempt(coarse, 9.0, None).unwrap();
+    assert!(point.is_solved() && point.sampling_error[0] > 0.0);
+    assert_eq!(point.error_estimate, point.sampling_error);
+    // As the last one it has both errors all the same.
+    let sampling = point.sampling_error.clone();
+    balance.complete_estimate(&mut point).unwrap();
+    assert_eq!(point.sampling_error, sampling);
+    assert!(point.error_estimate[0] > 2.0 * sampling[0]);
+    let last = balance.solve(9.0, None).unwrap();
+    assert!(last.is_solved() && last.samples > Some(32));
+    assert!(last.error_estimate[0] > 2.0 * last.sampling_error[0]);
 }

@@ -7,10 +7,13 @@ use crate::contact::stick_slip::crossing;
 use crate::contact::{Coulomb, Motion};
 use crate::fourier::{Harmonics, SampleTable, TurningPoint};
 use std::cell::OnceCell;
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 /// Part of a way that is rounding.
 const ROUNDING: f64 = 1e-12;
+/// Instants of a period that tell most motions from those that leave the slider where it is, at a tenth of the
+/// price of a cycle.
+const INSTANTS: usize = 16;
 
 /// Pull and normal force of a periodic motion.
 pub(super) struct Drive<'a> {
@@ -148,40 +151,46 @@ impl<'a> Drive<'a> {
         self.pull.len() + self.limit_columns()
     }
 
-    /// Whether a few instants show that the slider moves or the contact opens: where the fundamental of the
-    /// pressing force is least, where those of the walls reach farthest, and where that of the pull in two
-    /// directions is largest. A slider at rest would have to be within the limit at both ends of its way.
+    /// Whether a few instants show that the slider moves or the contact opens: those at which the fundamentals
+    /// reach farthest, and as many others as tell most motions. A slider at rest would have to be within the
+    /// limit at all of them.
     pub(super) fn surely_moves(&self) -> bool {
-        let Some(slot) = self.harmonics().slot(1) else { return false };
-        let slots = self.harmonics().slots();
-        let at = |theta: f64| {
+        let mut before: Vec<([f64; 2], f64)> = Vec::new();
+        let others = (0..INSTANTS).map(|n| TAU * n as f64 / INSTANTS as f64);
+        self.farthest().into_iter().chain(others).any(|theta| {
             let ([x, y], [pressing, _]) = self.at(theta);
-            ([x[0], y[0]], pressing)
-        };
+            let (pull, limit) = ([x[0], y[0]], self.friction * pressing.max(0.0));
+            let moves = before.iter().any(|(from, least)| {
+                let way = (pull[0] - from[0]).hypot(pull[1] - from[1]);
+                (1.0 - ROUNDING) * way > limit + least
+            });
+            before.push((pull, limit));
+            moves || (self.pressing.is_some() && pressing < 0.0)
+        })
+    }
+
+    /// Where the fundamental of the pressing force is least, and two instants between which those of the walls,
+    /// or of the pull in two directions, have the longest way.
+    fn farthest(&self) -> Vec<f64> {
+        let Some(slot) = self.harmonics().slot(1) else { return Vec::new() };
         let pair = |series: &[f64]| [series[slot], series[slot + 1]];
         let crest = |[cosine, sine]: [f64; 2]| sine.atan2(cosine);
         let pressed = self.pressing.as_ref().map_or([0.0; 2], |pressing| pair(&pressing.series));
-        if self.pressing.is_some() && at(crest(pressed) + PI).1 < 0.0 {
-            return true;
-        }
+        let least = crest(pressed) + PI;
         let pull = pair(&self.pull);
-        let [first, second] = if self.directions == 1 {
+        if self.directions == 1 {
             let wall = |sign: f64| {
                 let by = sign * self.friction;
                 crest([0, 1].map(|i| pull[i] - by * pressed[i]))
             };
-            [wall(1.0), wall(-1.0) + PI]
-        } else {
-            // |K|² of the fundamentals varies as cos 2θ.
-            let across = pair(&self.pull[slots..]);
-            let [c, s] = [0, 1].map(|i| [pull[i], across[i]]);
-            let along = 2.0 * (c[0] * s[0] + c[1] * s[1]);
-            let theta = 0.5 * along.atan2(c[0] * c[0] + c[1] * c[1] - s[0] * s[0] - s[1] * s[1]);
-            [theta, theta + PI]
-        };
-        let [(from, least), (to, most)] = [at(first), at(second)];
-        let limit = self.friction * (least.max(0.0) + most.max(0.0));
-        (1.0 - ROUNDING) * (from[0] - to[0]).hypot(from[1] - to[1]) > limit
+            return vec![wall(1.0), wall(-1.0) + PI, least];
+        }
+        // |K|² of the fundamentals varies as cos 2θ.
+        let across = pair(self.pull(1));
+        let [c, s] = [0, 1].map(|i| [pull[i], across[i]]);
+        let along = 2.0 * (c[0] * s[0] + c[1] * s[1]);
+        let theta = 0.5 * along.atan2(c[0] * c[0] + c[1] * c[1] - s[0] * s[0] - s[1] * s[1]);
+        vec![theta, theta + PI, least]
     }
 
     /// When the contact is closed.
