@@ -163,8 +163,8 @@ fn estimates_of_planar_contacts_are_few_and_short_along_a_fine_curve() {
     let (points, beyond) = along(30.0);
     assert!(points.iter().all(|point| point.contacts[0].slip_fraction > 0.1));
     assert!(points.iter().all(|point| point.error_estimate.iter().all(|error| *error > 0.0)));
-    // A third of the points evaluates the law once, and a few of them twice.
-    assert!(beyond > 5 && 5 * beyond <= 2 * points.len(), "{beyond} of {} points", points.len());
+    // Where every other point estimates and asks for the state by another evaluation, they are as many as points.
+    assert!(beyond > 5 && 3 * beyond <= 2 * points.len(), "{beyond} of {} points", points.len());
 }
 
 #[test]
@@ -189,7 +189,7 @@ fn estimates_of_sampled_laws_go_on_along_a_fine_curve() {
         assert!(point.is_solved() && point.sampling_error[0] > 0.0);
         assert!(point.error_estimate[0] > 1.5 * point.sampling_error[0]);
         taken.push(steps.load(Relaxed) - before);
-        start = point.unknowns;
+        start = point.unknowns().cloned();
     }
     let later = &taken[4..];
     let (least, most) = (later.iter().min().unwrap(), later.iter().max().unwrap());
