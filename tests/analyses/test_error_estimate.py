@@ -186,9 +186,10 @@ def test_estimates_go_on_along_smooth_pieces() -> None:
     for harmonics in (1, 3):
         curve = ss.forced_response(beam, omega, harmonics)
         errors = np.array([curve.error_estimate(dof) for dof in curve.dofs])
-        found = carried_on(errors)
+        # At most two in a row: an estimate costs less than two solutions close to their neighbours.
+        found = carried_on(errors, 2)
         assert len(found) >= 7
-        assert (np.diff(found) > 1).all()
+        assert (np.array(found[2:]) - found[:-2] > 2).all()
         alone = [ss.forced_response(beam, omega[[i]], harmonics) for i in found]
         own = np.array([[one.error_estimate(dof)[0] for one in alone] for dof in curve.dofs])
         # Where a second step sets in, its estimate is up to twice that of the point before.

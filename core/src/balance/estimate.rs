@@ -99,12 +99,10 @@ impl ForcedBalance<'_> {
         let (half_wave, observed) = (harmonics.half_wave(), self.observe.len());
         let given = self.evaluated(None)?;
         let effort = Effort::new(&given, half_wave, slipping, observed);
-        // Where harmonics are chosen, every estimate decides by itself; samples are chosen by their own errors. Points of a curve whose frequency is
+        // Where harmonics are chosen, every estimate decides by itself. Points of a curve whose frequency is
         // unknown take more than their steps.
-        let fixed = self.control.has_given_harmonics();
-        let counts = self.control.is_fixed()
-            && effort.keeps_account()
-            && solved.is_none_or(|solved| !solved.slopes);
+        let fixed = self.control.is_fixed();
+        let counts = fixed && effort.keeps_account() && solved.is_none_or(|solved| !solved.slopes);
         let earned = counts.then(|| effort.earned(harmonics.highest()));
         let credit = self.neighbour.credit(point, earned);
         let whole = Extension::new(&effort, harmonics, point.omega, credit);

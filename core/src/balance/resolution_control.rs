@@ -77,11 +77,6 @@ impl ResolutionControl {
         self.settings.harmonics != HarmonicChoice::Auto && !self.samples_climb()
     }
 
-    /// Whether harmonics are given: no estimate chooses them.
-    pub(super) fn has_given_harmonics(&self) -> bool {
-        self.settings.harmonics != HarmonicChoice::Auto
-    }
-
     /// Whether the number of samples is chosen.
     pub(super) fn samples_climb(&self) -> bool {
         self.settings.evaluation == Evaluation::Marched(SampleChoice::Auto)
