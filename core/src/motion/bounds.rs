@@ -6,6 +6,9 @@ use super::modal_system::{dot, ModalSystem};
 use crate::contact::{Bound, PointState, SlipPlane};
 use std::ops::Range;
 
+/// Modes up to which a pass along a motion is as cheap as a way beside one.
+const FEW: usize = 8;
+
 impl ModalSystem {
     /// Slip limit of a point under these forces, none where it is open \[N\].
     pub(super) fn limit(&self, point: usize, force: &[f64]) -> f64 {
@@ -144,6 +147,14 @@ impl ModalSystem {
     /// Whether slip limits vary, or contacts may open.
     pub(crate) fn has_normals(&self) -> bool {
         !self.normals.is_empty()
+    }
+
+    /// Whether a motion can be followed beside another one: all contacts are single springs under constant limits,
+    /// and modes so many that the way is worth it.
+    pub(crate) fn is_followed_beside(&self) -> bool {
+        let single = self.bodies().iter().all(|body| body.points.len() == 1);
+        let constant = |bound: &Bound| matches!(bound, Bound::Constant(_));
+        self.modes() > FEW && single && self.bounds.iter().all(constant)
     }
 
     /// Derivative of the slip limit of a point in the modal displacements while it is closed; empty

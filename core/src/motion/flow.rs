@@ -176,6 +176,7 @@ impl<'a> Flow<'a> {
                     speed: &speed,
                     before,
                     after: &after,
+                    state,
                     turn,
                 });
                 before = &after;

@@ -3,6 +3,7 @@
 use super::contact_state::ContactState;
 use super::microslip::Turn;
 use super::power_series::PowerSeries;
+use super::state::State;
 use crate::contact::PointState;
 use std::sync::Arc;
 
@@ -53,6 +54,8 @@ pub enum FlowEvent<'a> {
         before: &'a Arc<ContactState>,
         /// After it.
         after: &'a Arc<ContactState>,
+        /// The motion at the event, with the contact states after it.
+        state: &'a State,
         /// Of a contact without sliders, by its number, what the event does to its reversals.
         turn: Option<(usize, Turn)>,
     },

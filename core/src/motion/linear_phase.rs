@@ -6,6 +6,7 @@ use super::flow_event::{Event, FlowEvent};
 use super::microslip::Turn;
 use super::modal_system::ModalSystem;
 use super::power_series::PowerSeries;
+use super::state::State;
 use crate::contact::PointState;
 use std::sync::Arc;
 
@@ -20,6 +21,16 @@ pub(crate) struct LinearPhase {
     pub(super) slide: Option<(PowerSeries, f64)>,
     /// What happens at its end to the reversals of contacts without sliders, by their numbers.
     pub(super) turns: Vec<(usize, Turn)>,
+    /// The event at its end, of systems whose motions are followed beside others.
+    pub(super) crossing: Option<Crossing>,
+}
+
+/// An event, with the motion at it and the regime behind it.
+#[derive(Debug, Clone)]
+pub(super) struct Crossing {
+    pub(super) event: Event,
+    pub(super) state: State,
+    pub(super) after: Arc<ContactState>,
 }
 
 /// What an event at a point does to the derivative of the forces.
@@ -60,6 +71,7 @@ impl LinearPhase {
                         .is_nonlinear()
                         .then(|| (segment.series.clone(), segment.length)),
                     turns: Vec::new(),
+                    crossing: None,
                 }),
             },
             FlowEvent::Event { before, turn: Some(turn), .. } => match phases.last_mut() {
@@ -70,6 +82,7 @@ impl LinearPhase {
                     onset: None,
                     slide: None,
                     turns: vec![*turn],
+                    crossing: None,
                 }),
             },
             // Changes before the first segment find the states to begin with.
@@ -79,7 +92,15 @@ impl LinearPhase {
             // What slides in a plane says itself what remains of a disturbance, and nothing jumps where
             // it comes to rest.
             FlowEvent::Event { event, .. } if system.plane_of(event.point).is_some() => {}
-            FlowEvent::Event { event, speed, before, after, .. } => {
+            FlowEvent::Event { event, speed, before, after, state, .. } => {
+                if let Some(phase) = phases.last_mut().filter(|_| system.is_followed_beside()) {
+                    let first = phase.crossing.is_none() && phase.regime.points == before.points;
+                    phase.crossing = first.then(|| Crossing {
+                        event: *event,
+                        state: (*state).clone(),
+                        after: Arc::clone(after),
+                    });
+                }
                 let rate = |regime: &ContactState, i: usize| -> f64 {
                     speed.iter().enumerate().map(|(j, v)| regime.tangent[(i, j)] * v).sum()
                 };
@@ -111,7 +132,8 @@ impl LinearPhase {
                     _ => {
                         let regime = Arc::clone(before);
                         let (slide, turns) = (None, Vec::new());
-                        phases.push(Self { regime, duration: 0.0, onset, slide, turns });
+                        let crossing = None;
+                        phases.push(Self { regime, duration: 0.0, onset, slide, turns, crossing });
                     }
                 }
             }
@@ -121,6 +143,11 @@ impl LinearPhase {
     /// Whether time passes in it, and disturbances follow linear equations of one kind.
     pub(crate) fn is_linear(&self) -> bool {
         self.slide.is_none() && self.duration > 0.0
+    }
+
+    /// Whether it is one of these contact states.
+    pub(crate) fn begins_as(&self, points: &[PointState]) -> bool {
+        self.regime.points == points
     }
 
     /// Whether a point slips in it.

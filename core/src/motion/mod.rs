@@ -2,6 +2,7 @@
 //! of free motions.
 
 mod basin;
+mod beside;
 mod bodies;
 mod bounds;
 mod branch_series;
@@ -30,6 +31,7 @@ mod power_series;
 mod projection;
 mod propagator;
 mod quadrature;
+mod regime_rates;
 mod returns;
 mod rigid;
 mod runge_kutta;

@@ -259,6 +259,24 @@ impl Propagators {
         self.known.len()
     }
 
+    /// What is known of a stretch at these rates, or nearly so, to within a length, with its own duration.
+    pub(super) fn known(
+        &mut self,
+        equations: &Equations,
+        regime: &ContactState,
+        [duration, close]: [f64; 2],
+    ) -> Option<(&Driven, f64)> {
+        self.stretches += 1;
+        let off = |own: &Propagator| (own.duration - duration).abs();
+        let serves = |own: &&mut Propagator| {
+            off(own) <= close && own.points == regime.points && own.strains == equations.strains
+        };
+        let closest = |a: &&mut Propagator, b: &&mut Propagator| off(a).total_cmp(&off(b));
+        let own = self.known.iter_mut().filter(serves).min_by(closest)?;
+        own.served = self.stretches;
+        Some((&own.exponential, own.duration))
+    }
+
     /// Takes states over a stretch at these rates, or nearly so, to within a length; the duration that is left.
     pub(super) fn advance(
         &mut self,
@@ -268,16 +286,9 @@ impl Propagators {
         states: Mat<f64>,
         inputs: &Mat<f64>,
     ) -> (Mat<f64>, f64) {
-        self.stretches += 1;
-        let off = |own: &Propagator| (own.duration - duration).abs();
-        let serves = |own: &&mut Propagator| {
-            off(own) <= close && own.points == regime.points && own.strains == equations.strains
-        };
-        let closest = |a: &&mut Propagator, b: &&mut Propagator| off(a).total_cmp(&off(b));
-        if let Some(own) = self.known.iter_mut().filter(serves).min_by(closest) {
-            own.served = self.stretches;
-            let states = own.exponential.applied(states.as_ref(), inputs.as_ref());
-            return (states, duration - own.duration);
+        if let Some((exponential, own)) = self.known(equations, regime, [duration, close]) {
+            let states = exponential.applied(states.as_ref(), inputs.as_ref());
+            return (states, duration - own);
         }
         let exponential = equations.exponential(duration);
         let states = exponential.applied(states.as_ref(), inputs.as_ref());

@@ -1,6 +1,7 @@
 //! Exact periodic orbits by shooting with the exact flow, and their Floquet multipliers: no
 //! harmonic is discarded, so that they judge the harmonic balance.
 
+mod beside;
 mod closed;
 mod closing;
 mod curve_stability;

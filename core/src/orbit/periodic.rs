@@ -229,11 +229,9 @@ impl<'a> PeriodicOrbits<'a> {
         if read.closing.is_nan() && shooting.interrupted() {
             return Ok(self.empty(omega, PointStatus::NotComputed));
         }
-        // The last step of Newton's method was not looked at.
-        if read.error > self.newton().tolerance
-            && read.closing <= NEARLY
-            && chosen == Chosen::Inside
-        {
+        // The last step of Newton's method was not looked at, nor was what an image beside another left out.
+        let missed = chosen == Chosen::Inside && !(read.error <= self.newton().tolerance);
+        if missed && (shooting.distrust() || read.closing <= NEARLY) {
             let mut closer = y.clone();
             let report = newton(shooting, &mut closer, self.newton());
             iterations += report.iterations;

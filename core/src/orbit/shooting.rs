@@ -26,15 +26,15 @@ pub(super) struct Shooting<'a> {
     /// Whether segments are those of half a period.
     pub(super) symmetric: bool,
     /// Symmetry of a travelling wave, and what it does to the coordinates.
-    rotation: Option<(Rotation, Mat<f64>)>,
-    period: f64,
+    pub(super) rotation: Option<(Rotation, Mat<f64>)>,
+    pub(super) period: f64,
     span: f64,
     /// When the span begins \[s\].
     begin: f64,
     interrupted: Option<&'a dyn Fn() -> bool>,
     /// Of the last evaluation: phases, what held the forces at the start, points that have slipped.
-    phases: Vec<LinearPhase>,
-    held: Vec<PointState>,
+    pub(super) phases: Vec<LinearPhase>,
+    pub(super) held: Vec<PointState>,
     /// The forces at the start.
     begun: Vec<f64>,
     pub(super) slipped: Vec<bool>,
@@ -49,12 +49,15 @@ pub(super) struct Shooting<'a> {
     closing: Option<Closing>,
     earlier: bool,
     /// Unknowns, image and points that have slipped of the last evaluation.
-    last: Option<(Vec<f64>, Vec<f64>, Vec<bool>)>,
+    pub(super) last: Option<(Vec<f64>, Vec<f64>, Vec<bool>)>,
     /// Transition matrices assembled so far, and exponentials of their stretches.
     pub(super) matrices: usize,
     /// Whether transition matrices are paid for with steps of the flow.
     charges: bool,
-    propagators: Propagators,
+    pub(super) propagators: Propagators,
+    /// Whether images beside the last one may serve, and how many have.
+    pub(super) trusts: bool,
+    pub(super) beside: usize,
 }
 
 impl<'a> Shooting<'a> {
@@ -108,6 +111,8 @@ impl<'a> Shooting<'a> {
             matrices: 0,
             charges: false,
             propagators: Propagators::default(),
+            trusts: true,
+            beside: 0,
         }
     }
 
@@ -347,6 +352,10 @@ impl System for Shooting<'_> {
     }
 
     fn value(&mut self, x: &[f64], out: &mut [f64]) {
+        if let Some(image) = self.image_beside(x) {
+            out.iter_mut().zip(image.iter().zip(x)).for_each(|(out, (image, x))| *out = image - x);
+            return;
+        }
         let (derivative, slipped) = (self.derivative(), std::mem::take(&mut self.slipped));
         let closing = self.closing.take();
         self.residual(x, out);

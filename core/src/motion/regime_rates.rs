@@ -1,0 +1,281 @@
+//! The equations of disturbances in one regime, `y' = A y` in the coordinates of [`Transition`], and power series of
+//! their solutions: products of A with a vector are those of modes and contacts.
+
+use super::contact_state::ContactState;
+use super::damping::Damping;
+use super::modal_system::ModalSystem;
+use super::transition::Transition;
+use crate::solve::dot;
+use faer::Mat;
+
+/// Term of a power series that is none, relative to the largest, and most terms: over a lag they fall at once.
+const ROUNDING: f64 = 1e-18;
+const TERMS: usize = 60;
+
+/// The equations of a regime in the coordinates of disturbances.
+pub(super) struct Rates<'a> {
+    of: &'a Transition<'a>,
+    /// Rates of the strains per velocity, and what they do to accelerations: strain, point, factor.
+    moves: Vec<(usize, usize, f64)>,
+    roots: &'a [(usize, usize, f64)],
+    /// Stiffness of points that press.
+    pressing: Vec<(usize, f64)>,
+}
+
+impl Transition<'_> {
+    /// `g = Σ root f` of all strains.
+    pub(super) fn roots(&self) -> Vec<(usize, usize, f64)> {
+        let mut roots = Vec::new();
+        for body in self.system.bodies() {
+            for (own, strain) in body.strains.clone().enumerate() {
+                let points = body.points.clone().enumerate();
+                let parts = points.map(|(row, i)| (strain, i, body.elastic.root()[(row, own)]));
+                roots.extend(parts.filter(|(_, _, root)| *root != 0.0));
+            }
+        }
+        roots
+    }
+
+    pub(super) fn rates<'a>(
+        &'a self,
+        regime: &ContactState,
+        roots: &'a [(usize, usize, f64)],
+    ) -> Rates<'a> {
+        let slope = |&i: &usize| (i, regime.tangent[(i, i)]);
+        let pressing = self.system.normals.iter().map(slope).filter(|(_, slope)| *slope != 0.0);
+        Rates { of: self, moves: self.strain_rates(regime), roots, pressing: pressing.collect() }
+    }
+}
+
+impl Rates<'_> {
+    /// Writes `Σ (A t)ⁿ y / n!` at some times t as columns from a place on, or of the transposed matrix.
+    pub(super) fn write_series(
+        &self,
+        start: Vec<f64>,
+        times: &[f64],
+        across: bool,
+        (out, place): (&mut Mat<f64>, usize),
+    ) {
+        pulp::Arch::new().dispatch(Series { rates: self, start, times, across, out, place });
+    }
+
+    /// Adds to a difference what the motion `y` changes by over a duration, by itself or under loads of a frequency
+    /// from a time on.
+    pub(super) fn go_on(
+        &self,
+        y: Vec<f64>,
+        loads: Option<[f64; 2]>,
+        duration: f64,
+        difference: &mut [f64],
+    ) {
+        let loads = loads.map(|at| Loads::new(self.of.system, at)).unwrap_or_default();
+        let way = Way { rates: self, y, loads, duration, terms: TERMS, difference };
+        pulp::Arch::new().dispatch(way);
+    }
+
+    /// `y'` under loads of a frequency at a time.
+    pub(super) fn rate(&self, y: Vec<f64>, at: [f64; 2]) -> Vec<f64> {
+        let (loads, mut rate) = (Loads::new(self.of.system, at), vec![0.0; y.len()]);
+        let difference = &mut rate;
+        pulp::Arch::new().dispatch(Way {
+            rates: self,
+            y,
+            loads,
+            duration: 1.0,
+            terms: 1,
+            difference,
+        });
+        rate
+    }
+
+    /// `factor A y`.
+    #[inline(always)]
+    fn apply(&self, y: &[f64], factor: f64, out: &mut [f64]) {
+        let (system, weight) = (self.of.system, &self.of.weight);
+        let modes = weight.len();
+        let ((x, rest), (to_x, to_rest)) = (y.split_at(modes), out.split_at_mut(modes));
+        let ((v, g), (to_v, to_g)) = (rest.split_at(modes), to_rest.split_at_mut(modes));
+        let squares = system.omega_squared();
+        for (((to_x, to_v), (x, v)), (w, square)) in
+            to_x.iter_mut().zip(&mut *to_v).zip(x.iter().zip(v)).zip(weight.iter().zip(squares))
+        {
+            (*to_x, *to_v) = (factor * w * v, -factor * square / w * x);
+        }
+        damp(&system.damping, v, -factor, to_v, false);
+        for &(strain, point, root) in self.roots.iter().filter(|(strain, ..)| g[*strain] != 0.0) {
+            add(to_v, -factor * root * g[strain], system.contact_shape(point));
+        }
+        for &(point, slope) in &self.pressing {
+            let shape = system.contact_shape(point);
+            let parts = shape.iter().zip(weight).zip(x);
+            let displaced: f64 = parts.map(|((b, w), x)| b / w * x).sum();
+            add(to_v, -factor * slope * displaced, shape);
+        }
+        to_g.fill(0.0);
+        for &(strain, point, rate) in &self.moves {
+            to_g[strain] += factor * rate * dot(system.contact_shape(point), v);
+        }
+    }
+
+    /// `factor Aᵀ y`.
+    #[inline(always)]
+    fn apply_across(&self, y: &[f64], factor: f64, out: &mut [f64]) {
+        let (system, weight) = (self.of.system, &self.of.weight);
+        let modes = weight.len();
+        let ((x, rest), (to_x, to_rest)) = (y.split_at(modes), out.split_at_mut(modes));
+        let ((v, g), (to_v, to_g)) = (rest.split_at(modes), to_rest.split_at_mut(modes));
+        let squares = system.omega_squared();
+        for (((to_x, to_v), (x, v)), (w, square)) in
+            to_x.iter_mut().zip(&mut *to_v).zip(x.iter().zip(v)).zip(weight.iter().zip(squares))
+        {
+            (*to_x, *to_v) = (-factor * square / w * v, factor * w * x);
+        }
+        damp(&system.damping, v, -factor, to_v, true);
+        for &(strain, point, rate) in self.moves.iter().filter(|(strain, ..)| g[*strain] != 0.0) {
+            add(to_v, factor * rate * g[strain], system.contact_shape(point));
+        }
+        for &(point, slope) in &self.pressing {
+            let shape = system.contact_shape(point);
+            let by = -factor * slope * dot(shape, v);
+            let parts = to_x.iter_mut().zip(shape.iter().zip(weight));
+            parts.for_each(|(to, (b, w))| *to += by * b / w);
+        }
+        to_g.fill(0.0);
+        for &(strain, point, root) in self.roots {
+            to_g[strain] -= factor * root * dot(system.contact_shape(point), v);
+        }
+    }
+}
+
+/// Adds `factor C v`, or of the transposed matrix.
+#[inline(always)]
+fn damp(damping: &Damping, v: &[f64], factor: f64, out: &mut [f64], across: bool) {
+    match damping {
+        Damping::Diagonal(own) => {
+            let parts = out.iter_mut().zip(own).zip(v);
+            parts.for_each(|((out, c), v)| *out += factor * c * v);
+        }
+        Damping::Full(own) if across => {
+            let columns = out.iter_mut().enumerate();
+            columns.for_each(|(j, out)| *out += factor * dot(own.col_as_slice(j), v));
+        }
+        Damping::Full(own) => {
+            let columns = v.iter().enumerate();
+            columns.for_each(|(j, v)| add(out, factor * v, own.col_as_slice(j)));
+        }
+    }
+}
+
+#[inline(always)]
+fn add(out: &mut [f64], factor: f64, row: &[f64]) {
+    out.iter_mut().zip(row).for_each(|(out, row)| *out += factor * row);
+}
+
+/// A power series at some times. A closure would be no part of what vector instructions are chosen for.
+struct Series<'a> {
+    rates: &'a Rates<'a>,
+    start: Vec<f64>,
+    times: &'a [f64],
+    across: bool,
+    out: &'a mut Mat<f64>,
+    place: usize,
+}
+
+impl pulp::NullaryFnOnce for Series<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self { rates, start: mut term, times, across, out, place } = self;
+        let longest = times.iter().fold(0.0_f64, |most, t| most.max(t.abs()));
+        let shares: Vec<f64> = times.iter().map(|t| t / longest).collect();
+        let mut powers = vec![1.0; times.len()];
+        let mut next = vec![0.0; term.len()];
+        let mut most = 0.0_f64;
+        for order in 1..TERMS {
+            let size = dot(&term, &term).sqrt();
+            most = most.max(size);
+            if size <= ROUNDING * most {
+                break;
+            }
+            for (k, (power, share)) in powers.iter_mut().zip(&shares).enumerate() {
+                add(out.col_as_slice_mut(place + k), *power, &term);
+                *power *= share;
+            }
+            let factor = longest / order as f64;
+            if across {
+                rates.apply_across(&term, factor, &mut next);
+            } else {
+                rates.apply(&term, factor, &mut next);
+            }
+            std::mem::swap(&mut term, &mut next);
+        }
+    }
+}
+
+/// Waves of the loads: of each its angular frequency, and a term of the power series of `exp(ik ω t)`.
+#[derive(Default)]
+struct Loads(Vec<(f64, [f64; 2])>);
+
+impl Loads {
+    fn new(system: &ModalSystem, [omega, time]: [f64; 2]) -> Self {
+        let wave = |order: usize| {
+            let (sin, cos) = (order as f64 * omega * time).sin_cos();
+            (order as f64 * omega, [cos, sin])
+        };
+        Self(system.loads.iter().map(|(order, _)| wave(*order)).collect())
+    }
+
+    /// Adds a multiple of the terms to the accelerations among rates.
+    #[inline(always)]
+    fn add(&self, system: &ModalSystem, factor: f64, rates: &mut [f64]) {
+        for ((_, load), (_, [re, im])) in system.loads.iter().zip(&self.0) {
+            let accelerations = rates[system.modes()..].iter_mut().zip(load);
+            accelerations.for_each(|(a, p)| *a += factor * (p.re * re - p.im * im));
+        }
+    }
+
+    /// Goes on to the next terms over a duration per order.
+    #[inline(always)]
+    fn advance(&mut self, factor: f64) {
+        for (frequency, [re, im]) in &mut self.0 {
+            let step = *frequency * factor;
+            (*re, *im) = (-step * *im, step * *re);
+        }
+    }
+}
+
+/// The change of a motion by a power series. A closure would be no part of what vector instructions are chosen for.
+struct Way<'a> {
+    rates: &'a Rates<'a>,
+    y: Vec<f64>,
+    loads: Loads,
+    duration: f64,
+    /// Most terms behind the first one.
+    terms: usize,
+    difference: &'a mut [f64],
+}
+
+impl pulp::NullaryFnOnce for Way<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self { rates, y: mut term, mut loads, duration, terms, difference } = self;
+        let mut next = vec![0.0; term.len()];
+        let mut most = dot(&term, &term).sqrt();
+        for order in 1..=terms {
+            let factor = duration / order as f64;
+            rates.apply(&term, factor, &mut next);
+            loads.add(rates.of.system, factor, &mut next);
+            loads.advance(factor);
+            std::mem::swap(&mut term, &mut next);
+            add(difference, 1.0, &term);
+            let size = dot(&term, &term).sqrt();
+            most = most.max(size);
+            if size <= ROUNDING * most {
+                break;
+            }
+        }
+    }
+}
