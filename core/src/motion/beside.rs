@@ -11,7 +11,7 @@ use super::propagator::{Propagators, Reach};
 use super::regime_rates::Rates;
 use super::transition::Transition;
 use crate::contact::PointState;
-use crate::solve::dot;
+use crate::solve::{dot, norm};
 use faer::Mat;
 
 /// By how much an event may come earlier or later, in units of the fastest rate: further off the series of the
@@ -20,6 +20,8 @@ const FARTHEST: f64 = 4.0;
 /// Step of Newton's method towards its instant, in the same units, that leaves nothing, and most steps.
 const FOUND: f64 = 1e-7;
 const STEPS: usize = 8;
+/// Term of a difference, relative to the motion, that is none.
+const ROUNDING: f64 = 1e-18;
 
 impl Transition<'_> {
     /// Difference at the end of the phases of a motion at `omega` [rad/s] from that at their start; nothing where
@@ -35,37 +37,82 @@ impl Transition<'_> {
         let mut own = difference.to_vec();
         // By how long the difference lags behind, and by how much later the last event was.
         let (mut lag, mut last) = (0.0, 0.0);
+        let mut before = self.rates(&phases.first()?.regime, &roots);
         for (number, phase) in phases.iter().enumerate() {
-            let before = self.rates(&phase.regime, &roots);
-            let mut total = Mat::from_fn(own.len(), 1, |i, _| own[i]);
-            let (reach, duration) = (Reach::LAGGING, lag + phase.duration);
-            lag = self.advance_as_known(&phase.regime, duration, reach, &mut total, known)?;
-            own.copy_from_slice(total.col_as_slice(0));
-            before.lag(lag, &mut own);
+            lag = self.pass_as_known(&before, phase, lag, &mut own, known)?;
             let Some(next) = phases.get(number + 1) else {
+                before.lag(lag, &mut own, 0.0);
                 // Behind the end nothing has happened yet.
                 return (last <= phase.duration).then_some(own);
             };
             let end = phase.crossing.as_ref();
             let end = end.filter(|end| end.after.points == next.regime.points)?;
+            let motion = self.coordinates(&end.state);
+            let nothing = ROUNDING * norm(&motion);
+            before.lag(lag, &mut own, nothing);
             let after = self.rates(&next.regime, &roots);
-            let late = self.cross([&before, &after], phase, end, omega, &mut own)?;
+            let late = self.cross([&before, &after], (phase, end), omega, &motion, &mut own)?;
             if phase.duration + late < last {
                 return None;
             }
             last = late;
-            after.lag(-lag, &mut own);
+            after.lag(-lag, &mut own, nothing);
+            before = after;
         }
         None
+    }
+
+    /// Takes a difference along a phase, or nearly so, by an exponential that is known; the duration that is left.
+    fn pass_as_known(
+        &self,
+        rates: &Rates<'_>,
+        phase: &LinearPhase,
+        lag: f64,
+        difference: &mut [f64],
+        known: &mut Propagators,
+    ) -> Option<f64> {
+        let (duration, fastest) = (lag + phase.duration, self.system().rate(0.0));
+        let Reach { short, close } = Reach::LAGGING;
+        if duration * fastest <= short {
+            return Some(duration);
+        }
+        let (system, weight) = (self.system(), self.weight());
+        let strains: Vec<usize> = rates.moves.iter().map(|(strain, ..)| *strain).collect();
+        let own = known.known(&strains, &phase.regime, [duration, close / fastest])?;
+        let (motion, g) = difference.split_at_mut(2 * weight.len());
+        if (0..g.len()).any(|i| g[i] != 0.0 && strains.binary_search(&i).is_err()) {
+            return None;
+        }
+        // In the units of the exponential; what displacements do not make of strains is constant.
+        let modes = weight.len();
+        let mut states = Mat::from_fn(2 * modes, 1, |i, _| {
+            motion[i] * if i < modes { own.scale[i] / weight[i] } else { 1.0 }
+        });
+        let strain = |states: &Mat<f64>, &(_, point, rate): &(usize, usize, f64)| -> f64 {
+            let shape = system.contact_shape(point).iter().zip(&own.scale);
+            let parts = shape.zip(states.col_as_slice(0));
+            rate * parts.map(|((b, s), x)| b / s * x).sum::<f64>()
+        };
+        let constant: Vec<f64> =
+            rates.moves.iter().map(|one| g[one.0] - strain(&states, one)).collect();
+        let inputs = Mat::from_fn(constant.len(), 1, |i, _| constant[i]);
+        states = own.exponential.applied(states.as_ref(), inputs.as_ref());
+        for (one, constant) in rates.moves.iter().zip(&constant) {
+            g[one.0] = constant + strain(&states, one);
+        }
+        for (i, (to, x)) in motion.iter_mut().zip(states.col_as_slice(0)).enumerate() {
+            *to = x * if i < modes { weight[i] / own.scale[i] } else { 1.0 };
+        }
+        Some(duration - own.duration)
     }
 
     /// Takes the difference at an event to the regime behind it; by how much later the motion meets it.
     fn cross(
         &self,
         [before, after]: [&Rates<'_>; 2],
-        phase: &LinearPhase,
-        end: &Crossing,
+        (phase, end): (&LinearPhase, &Crossing),
         omega: f64,
+        motion: &[f64],
         difference: &mut [f64],
     ) -> Option<f64> {
         let (system, modes, point) = (self.system(), self.weight().len(), end.event.point);
@@ -75,7 +122,6 @@ impl Transition<'_> {
         // A strain grows on its side, a slip velocity falls.
         let way = if begins { end.event.state.sign() } else { -phase.regime.points[point].sign() };
         let (shape, fastest) = (system.contact_shape(point), system.rate(omega));
-        let motion = self.coordinates(&end.state);
         let beside = |difference: &[f64]| -> Vec<f64> {
             motion.iter().zip(difference).map(|(y, d)| y + d).collect()
         };
@@ -93,7 +139,7 @@ impl Transition<'_> {
             if !near || slope * way <= 0.0 {
                 return None;
             }
-            before.go_on(y, Some(at), step, difference);
+            before.go_on(y, Some(at), step, difference, 0.0);
             late += step;
             if step.abs() * fastest <= FOUND {
                 found = true;
@@ -104,16 +150,122 @@ impl Transition<'_> {
             difference[strain] = 0.0;
         }
         let at = [omega, end.event.time + late];
-        after.go_on(beside(difference), Some(at), -late, difference);
+        after.go_on(beside(difference), Some(at), -late, difference, 0.0);
         found.then_some(late)
     }
 }
 
 impl Rates<'_> {
-    /// Takes a difference on by a lag, or back.
-    fn lag(&self, lag: f64, difference: &mut [f64]) {
+    /// Takes a difference on by a lag, or back, but for what counts for nothing.
+    fn lag(&self, lag: f64, difference: &mut [f64], nothing: f64) {
         if lag != 0.0 {
-            self.go_on(difference.to_vec(), None, lag, difference);
+            self.go_on(difference.to_vec(), None, lag, difference, nothing);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::{ContactLaw, Jenkins};
+    use crate::model::{Contact, Model};
+    use crate::motion::{Flow, LoopDisturbance, ModalSystem, State};
+    use crate::structure::{HarmonicLoad, Structure};
+    use faer::c64;
+    use std::f64::consts::TAU;
+
+    const OMEGA: f64 = 1.3;
+
+    /// A chain of twelve masses on stiff springs, eight of them on Jenkins elements.
+    fn model() -> Model {
+        let size = 12;
+        let stiffness = Mat::from_fn(size, size, |i, j| match i.abs_diff(j) {
+            0 => 900.0 + 70.0 * i as f64,
+            1 => -400.0,
+            _ => 0.0,
+        });
+        let damping = faer::Scale(0.3) * Mat::<f64>::identity(size, size);
+        let mass = Mat::<f64>::identity(size, size);
+        let structure = Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref());
+        let contact = |i: usize| {
+            let law: Box<dyn ContactLaw> =
+                Box::new(Jenkins::new(150.0, 1.0 + 0.7 * i as f64).unwrap());
+            let rows = Mat::from_fn(1, size, |_, j| f64::from(u8::from(i == j)));
+            Contact { law, rows }
+        };
+        let amplitude = (0..size).map(|i| c64::new(12.0 + i as f64, 3.0)).collect();
+        let loads = vec![HarmonicLoad { harmonic: 1, amplitude }];
+        Model::new(structure.unwrap(), (0..8).map(contact).collect(), loads).unwrap()
+    }
+
+    /// Phases of a period from a state, and the state behind it.
+    fn passed(system: &ModalSystem, start: &State) -> (Vec<LinearPhase>, State) {
+        let (mut phases, mut state) = (Vec::new(), start.clone());
+        let until = state.time + TAU / OMEGA;
+        Flow::new(system, OMEGA)
+            .run(&mut state, until, &mut |passage| {
+                LinearPhase::record(&mut phases, system, &passage);
+            })
+            .unwrap();
+        (phases, state)
+    }
+
+    /// The difference is that of two passes, also where events come earlier and later, and takes no exponential
+    /// that is not known.
+    #[test]
+    fn a_motion_beside_another_is_that_of_a_pass() {
+        let model = model();
+        let system = ModalSystem::new(&model).unwrap();
+        let mut start = State::rest(&system);
+        Flow::new(&system, OMEGA).run(&mut start, 3.0 * TAU / OMEGA, &mut |_| {}).unwrap();
+        let own = Transition::new(&system, OMEGA);
+        let (phases, end) = passed(&system, &start);
+        assert!(phases.len() > 20, "{}", phases.len());
+        let mut known = Propagators::default();
+        known.serve(OMEGA, system.modes());
+        let none = &mut LoopDisturbance::default();
+        let matrix = own.along(&phases, &phases[0].regime.points, &start.force, none, &mut known);
+        let before = known.count();
+        let first = own.coordinates(&start);
+        for size in [1e-3, 1e-5, 1e-8] {
+            let mut moved = start.clone();
+            moved.velocity.iter_mut().enumerate().for_each(|(j, v)| *v += size * (j as f64).cos());
+            let (_, other) = passed(&system, &moved);
+            let subtract = |a: &[f64], b: &[f64]| -> Vec<f64> {
+                a.iter().zip(b).map(|(a, b)| a - b).collect()
+            };
+            let difference = subtract(&own.coordinates(&moved), &first);
+            let expected = subtract(&own.coordinates(&other), &own.coordinates(&end));
+            let found = own.beside(&phases, OMEGA, &difference, &mut known).unwrap();
+            let error = norm(&subtract(&found, &expected)) / norm(&first);
+            assert!(error < 1e-13, "{size} {error:e}");
+            // What is linear alone is not enough.
+            let linear = &matrix * Mat::from_fn(difference.len(), 1, |i, _| difference[i]);
+            let missed = norm(&subtract(linear.col_as_slice(0), &expected)) / norm(&first);
+            assert!(size < 1e-6 || missed > 1e3 * error, "{size} {missed:e} {error:e}");
+        }
+        assert_eq!(known.count(), before);
+    }
+
+    /// Far off, where events change their places, nothing is said.
+    #[test]
+    fn where_events_change_their_places_there_is_none() {
+        let model = model();
+        let system = ModalSystem::new(&model).unwrap();
+        let mut start = State::rest(&system);
+        Flow::new(&system, OMEGA).run(&mut start, 3.0 * TAU / OMEGA, &mut |_| {}).unwrap();
+        let own = Transition::new(&system, OMEGA);
+        let (phases, _) = passed(&system, &start);
+        let mut known = Propagators::default();
+        known.serve(OMEGA, system.modes());
+        let none = &mut LoopDisturbance::default();
+        own.along(&phases, &phases[0].regime.points, &start.force, none, &mut known);
+        let modes = system.modes();
+        let difference: Vec<f64> =
+            (0..own.size()).map(|i| if i < 2 * modes { 3.0 } else { 0.0 }).collect();
+        assert!(own.beside(&phases, OMEGA, &difference, &mut known).is_none());
+        assert!(own
+            .beside(&phases, OMEGA, &vec![0.0; own.size()], &mut Propagators::default())
+            .is_none());
     }
 }

@@ -28,31 +28,6 @@ impl Transition<'_> {
         })
     }
 
-    /// The same where what it takes is known.
-    pub(super) fn advance_as_known(
-        &self,
-        regime: &ContactState,
-        duration: f64,
-        reach: Reach,
-        total: &mut Mat<f64>,
-        known: &mut Propagators,
-    ) -> Option<f64> {
-        let fastest = self.system.rate(0.0);
-        if duration * fastest <= reach.short {
-            return Some(duration);
-        }
-        let lengths = [duration, reach.close / fastest];
-        let left = self.pass(regime, known.pace, total, |equations, states, inputs| {
-            match known.known(equations, regime, lengths) {
-                Some((exponential, own)) => {
-                    (exponential.applied(states.as_ref(), inputs.as_ref()), duration - own)
-                }
-                None => (states, f64::NAN),
-            }
-        });
-        (!left.is_nan()).then_some(left)
-    }
-
     /// Takes disturbances over a short duration, or back, by power series.
     pub(super) fn catch_up(&self, regime: &ContactState, duration: f64, total: &mut Mat<f64>) {
         self.pass(regime, 0.0, total, |equations, mut states, inputs| {

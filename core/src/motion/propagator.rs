@@ -27,11 +27,13 @@ const COLUMNS: usize = 48;
 
 /// The exponential over a stretch.
 #[derive(Debug)]
-struct Propagator {
+pub(super) struct Propagator {
     points: Vec<PointState>,
     strains: Vec<usize>,
-    duration: f64,
-    exponential: Driven,
+    pub(super) duration: f64,
+    /// The units of its displacements, s per mode [rad/s].
+    pub(super) scale: Vec<f64>,
+    pub(super) exponential: Driven,
     /// When it served last.
     served: usize,
 }
@@ -259,22 +261,22 @@ impl Propagators {
         self.known.len()
     }
 
-    /// What is known of a stretch at these rates, or nearly so, to within a length, with its own duration.
+    /// What is known of a stretch at the rates of a regime, or nearly so, to within a length.
     pub(super) fn known(
         &mut self,
-        equations: &Equations,
+        strains: &[usize],
         regime: &ContactState,
         [duration, close]: [f64; 2],
-    ) -> Option<(&Driven, f64)> {
+    ) -> Option<&Propagator> {
         self.stretches += 1;
         let off = |own: &Propagator| (own.duration - duration).abs();
         let serves = |own: &&mut Propagator| {
-            off(own) <= close && own.points == regime.points && own.strains == equations.strains
+            off(own) <= close && own.points == regime.points && own.strains == strains
         };
         let closest = |a: &&mut Propagator, b: &&mut Propagator| off(a).total_cmp(&off(b));
         let own = self.known.iter_mut().filter(serves).min_by(closest)?;
         own.served = self.stretches;
-        Some((&own.exponential, own.duration))
+        Some(own)
     }
 
     /// Takes states over a stretch at these rates, or nearly so, to within a length; the duration that is left.
@@ -286,14 +288,20 @@ impl Propagators {
         states: Mat<f64>,
         inputs: &Mat<f64>,
     ) -> (Mat<f64>, f64) {
-        if let Some((exponential, own)) = self.known(equations, regime, [duration, close]) {
-            let states = exponential.applied(states.as_ref(), inputs.as_ref());
-            return (states, duration - own);
+        if let Some(own) = self.known(&equations.strains, regime, [duration, close]) {
+            let states = own.exponential.applied(states.as_ref(), inputs.as_ref());
+            return (states, duration - own.duration);
         }
         let exponential = equations.exponential(duration);
         let states = exponential.applied(states.as_ref(), inputs.as_ref());
-        let (points, strains) = (regime.points.clone(), equations.strains.clone());
-        self.keep(Propagator { points, strains, duration, exponential, served: self.stretches });
+        self.keep(Propagator {
+            points: regime.points.clone(),
+            strains: equations.strains.clone(),
+            duration,
+            scale: equations.scale.clone(),
+            exponential,
+            served: self.stretches,
+        });
         (states, 0.0)
     }
 

@@ -16,7 +16,7 @@ const TERMS: usize = 60;
 pub(super) struct Rates<'a> {
     of: &'a Transition<'a>,
     /// Rates of the strains per velocity, and what they do to accelerations: strain, point, factor.
-    moves: Vec<(usize, usize, f64)>,
+    pub(super) moves: Vec<(usize, usize, f64)>,
     roots: &'a [(usize, usize, f64)],
     /// Stiffness of points that press.
     pressing: Vec<(usize, f64)>,
@@ -60,16 +60,17 @@ impl Rates<'_> {
     }
 
     /// Adds to a difference what the motion `y` changes by over a duration, by itself or under loads of a frequency
-    /// from a time on.
+    /// from a time on; terms as small as `nothing` are none.
     pub(super) fn go_on(
         &self,
         y: Vec<f64>,
         loads: Option<[f64; 2]>,
         duration: f64,
         difference: &mut [f64],
+        nothing: f64,
     ) {
         let loads = loads.map(|at| Loads::new(self.of.system, at)).unwrap_or_default();
-        let way = Way { rates: self, y, loads, duration, terms: TERMS, difference };
+        let way = Way { rates: self, y, loads, duration, terms: TERMS, nothing, difference };
         pulp::Arch::new().dispatch(way);
     }
 
@@ -83,6 +84,7 @@ impl Rates<'_> {
             loads,
             duration: 1.0,
             terms: 1,
+            nothing: 0.0,
             difference,
         });
         rate
@@ -253,6 +255,7 @@ struct Way<'a> {
     duration: f64,
     /// Most terms behind the first one.
     terms: usize,
+    nothing: f64,
     difference: &'a mut [f64],
 }
 
@@ -261,7 +264,7 @@ impl pulp::NullaryFnOnce for Way<'_> {
 
     #[inline(always)]
     fn call(self) {
-        let Self { rates, y: mut term, mut loads, duration, terms, difference } = self;
+        let Self { rates, y: mut term, mut loads, duration, terms, nothing, difference } = self;
         let mut next = vec![0.0; term.len()];
         let mut most = dot(&term, &term).sqrt();
         for order in 1..=terms {
@@ -273,7 +276,7 @@ impl pulp::NullaryFnOnce for Way<'_> {
             add(difference, 1.0, &term);
             let size = dot(&term, &term).sqrt();
             most = most.max(size);
-            if size <= ROUNDING * most {
+            if size <= nothing.max(ROUNDING * most) {
                 break;
             }
         }
