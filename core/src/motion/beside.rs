@@ -20,6 +20,9 @@ const FARTHEST: f64 = 4.0;
 /// Step of Newton's method towards its instant, in the same units, that leaves nothing, and most steps.
 const FOUND: f64 = 1e-7;
 const STEPS: usize = 8;
+/// How far the end of an exponential may be from that of its phase, in the same units: a difference has fewer digits
+/// to lose to the lag than a derivative.
+const CLOSE: f64 = 12.0;
 /// Term of a difference, relative to the motion, that is none.
 const ROUNDING: f64 = 1e-18;
 
@@ -72,13 +75,13 @@ impl Transition<'_> {
         known: &mut Propagators,
     ) -> Option<f64> {
         let (duration, fastest) = (lag + phase.duration, self.system().rate(0.0));
-        let Reach { short, close } = Reach::LAGGING;
+        let Reach { short, .. } = Reach::LAGGING;
         if duration * fastest <= short {
             return Some(duration);
         }
         let (system, weight) = (self.system(), self.weight());
         let strains: Vec<usize> = rates.moves.iter().map(|(strain, ..)| *strain).collect();
-        let own = known.known(&strains, &phase.regime, [duration, close / fastest])?;
+        let own = known.known(&strains, &phase.regime, [duration, CLOSE / fastest])?;
         let (motion, g) = difference.split_at_mut(2 * weight.len());
         if (0..g.len()).any(|i| g[i] != 0.0 && strains.binary_search(&i).is_err()) {
             return None;

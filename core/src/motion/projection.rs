@@ -142,8 +142,17 @@ impl Projection {
         self.to_points.products(both, out);
     }
 
-    /// Modal forces of two sets of forces at some points, in whole blocks.
-    pub(super) fn modal_forces(&self, forces: &[(usize, [f64; 2])], out: &mut [Vec<f64>; 2]) {
+    /// The same in one motion.
+    pub(super) fn displacement(&self, one: &[f64], out: &mut [Vec<f64>; 1]) {
+        self.to_points.products(one.iter().map(|a| [*a]).enumerate(), out);
+    }
+
+    /// Modal forces of some sets of forces at some points, in whole blocks.
+    pub(super) fn modal_forces<const N: usize>(
+        &self,
+        forces: &[(usize, [f64; N])],
+        out: &mut [Vec<f64>; N],
+    ) {
         self.to_modes.products(forces.iter().copied(), out);
     }
 }
@@ -171,6 +180,9 @@ mod tests {
                     assert!((found - expected).abs() <= ROUNDING * size);
                 }
             }
+            let mut alone = [Vec::new()];
+            projection.displacement(&both[1], &mut alone);
+            assert_eq!(alone[0], found[1]);
             let forces: Vec<(usize, [f64; 2])> =
                 (0..points).step_by(2).map(|i| (i, [(i as f64).cos(), 0.5])).collect();
             projection.modal_forces(&forces, &mut found);

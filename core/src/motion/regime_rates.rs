@@ -4,6 +4,7 @@
 use super::contact_state::ContactState;
 use super::damping::Damping;
 use super::modal_system::ModalSystem;
+use super::projection::Projection;
 use super::transition::Transition;
 use crate::solve::dot;
 use faer::Mat;
@@ -92,7 +93,7 @@ impl Rates<'_> {
 
     /// `factor A y`.
     #[inline(always)]
-    fn apply(&self, y: &[f64], factor: f64, out: &mut [f64]) {
+    fn apply(&self, y: &[f64], factor: f64, out: &mut [f64], room: &mut Room) {
         let (system, weight) = (self.of.system, &self.of.weight);
         let modes = weight.len();
         let ((x, rest), (to_x, to_rest)) = (y.split_at(modes), out.split_at_mut(modes));
@@ -104,24 +105,27 @@ impl Rates<'_> {
             (*to_x, *to_v) = (factor * w * v, -factor * square / w * x);
         }
         damp(&system.damping, v, -factor, to_v, false);
-        for &(strain, point, root) in self.roots.iter().filter(|(strain, ..)| g[*strain] != 0.0) {
-            add(to_v, -factor * root * g[strain], system.contact_shape(point));
+        room.force.clear();
+        room.force.resize(system.points(), 0.0);
+        for &(strain, point, root) in self.roots {
+            room.force[point] -= factor * root * g[strain];
         }
         for &(point, slope) in &self.pressing {
-            let shape = system.contact_shape(point);
-            let parts = shape.iter().zip(weight).zip(x);
+            let parts = system.contact_shape(point).iter().zip(weight).zip(x);
             let displaced: f64 = parts.map(|((b, w), x)| b / w * x).sum();
-            add(to_v, -factor * slope * displaced, shape);
+            room.force[point] -= factor * slope * displaced;
         }
+        room.press(&system.projection, to_v);
         to_g.fill(0.0);
+        system.projection.displacement(v, &mut room.speed);
         for &(strain, point, rate) in &self.moves {
-            to_g[strain] += factor * rate * dot(system.contact_shape(point), v);
+            to_g[strain] += factor * rate * room.speed[0][point];
         }
     }
 
     /// `factor Aᵀ y`.
     #[inline(always)]
-    fn apply_across(&self, y: &[f64], factor: f64, out: &mut [f64]) {
+    fn apply_across(&self, y: &[f64], factor: f64, out: &mut [f64], room: &mut Room) {
         let (system, weight) = (self.of.system, &self.of.weight);
         let modes = weight.len();
         let ((x, rest), (to_x, to_rest)) = (y.split_at(modes), out.split_at_mut(modes));
@@ -133,19 +137,42 @@ impl Rates<'_> {
             (*to_x, *to_v) = (-factor * square / w * v, factor * w * x);
         }
         damp(&system.damping, v, -factor, to_v, true);
-        for &(strain, point, rate) in self.moves.iter().filter(|(strain, ..)| g[*strain] != 0.0) {
-            add(to_v, factor * rate * g[strain], system.contact_shape(point));
+        room.force.clear();
+        room.force.resize(system.points(), 0.0);
+        for &(strain, point, rate) in &self.moves {
+            room.force[point] += factor * rate * g[strain];
         }
+        room.press(&system.projection, to_v);
+        system.projection.displacement(v, &mut room.speed);
         for &(point, slope) in &self.pressing {
-            let shape = system.contact_shape(point);
-            let by = -factor * slope * dot(shape, v);
-            let parts = to_x.iter_mut().zip(shape.iter().zip(weight));
+            let by = -factor * slope * room.speed[0][point];
+            let parts = to_x.iter_mut().zip(system.contact_shape(point).iter().zip(weight));
             parts.for_each(|(to, (b, w))| *to += by * b / w);
         }
         to_g.fill(0.0);
         for &(strain, point, root) in self.roots {
-            to_g[strain] -= factor * root * dot(system.contact_shape(point), v);
+            to_g[strain] -= factor * root * room.speed[0][point];
         }
+    }
+}
+
+/// Room for what forces do to modes, and modes to points.
+#[derive(Default)]
+struct Room {
+    force: Vec<f64>,
+    acting: Vec<(usize, [f64; 1])>,
+    modal: [Vec<f64>; 1],
+    speed: [Vec<f64>; 1],
+}
+
+impl Room {
+    /// Adds the modal forces of the forces at the points.
+    fn press(&mut self, projection: &Projection, out: &mut [f64]) {
+        let acting = self.force.iter().map(|force| [*force]).enumerate();
+        self.acting.clear();
+        self.acting.extend(acting.filter(|(_, force)| force[0] != 0.0));
+        projection.modal_forces(&self.acting, &mut self.modal);
+        out.iter_mut().zip(&self.modal[0]).for_each(|(out, force)| *out += force);
     }
 }
 
@@ -192,7 +219,7 @@ impl pulp::NullaryFnOnce for Series<'_> {
         let longest = times.iter().fold(0.0_f64, |most, t| most.max(t.abs()));
         let shares: Vec<f64> = times.iter().map(|t| t / longest).collect();
         let mut powers = vec![1.0; times.len()];
-        let mut next = vec![0.0; term.len()];
+        let (mut next, mut room) = (vec![0.0; term.len()], Room::default());
         let mut most = 0.0_f64;
         for order in 1..TERMS {
             let size = dot(&term, &term).sqrt();
@@ -206,9 +233,9 @@ impl pulp::NullaryFnOnce for Series<'_> {
             }
             let factor = longest / order as f64;
             if across {
-                rates.apply_across(&term, factor, &mut next);
+                rates.apply_across(&term, factor, &mut next, &mut room);
             } else {
-                rates.apply(&term, factor, &mut next);
+                rates.apply(&term, factor, &mut next, &mut room);
             }
             std::mem::swap(&mut term, &mut next);
         }
@@ -265,11 +292,11 @@ impl pulp::NullaryFnOnce for Way<'_> {
     #[inline(always)]
     fn call(self) {
         let Self { rates, y: mut term, mut loads, duration, terms, nothing, difference } = self;
-        let mut next = vec![0.0; term.len()];
+        let (mut next, mut room) = (vec![0.0; term.len()], Room::default());
         let mut most = dot(&term, &term).sqrt();
         for order in 1..=terms {
             let factor = duration / order as f64;
-            rates.apply(&term, factor, &mut next);
+            rates.apply(&term, factor, &mut next, &mut room);
             loads.add(rates.of.system, factor, &mut next);
             loads.advance(factor);
             std::mem::swap(&mut term, &mut next);
