@@ -23,28 +23,34 @@ impl Transition<'_> {
             return duration;
         }
         let close = reach.close / fastest;
-        self.pass(regime, known.pace, total, |equations, states, inputs| {
-            known.advance(equations, regime, [duration, close], states, inputs)
-        })
+        let room = known.spare.pop().unwrap_or_else(Mat::new);
+        let (room, left) =
+            self.pass(regime, known.pace, total, room, |equations, states, inputs| {
+                known.advance(equations, regime, [duration, close], states, inputs)
+            });
+        known.spare.push(room);
+        left
     }
 
     /// Takes disturbances over a short duration, or back, by power series.
     pub(super) fn catch_up(&self, regime: &ContactState, duration: f64, total: &mut Mat<f64>) {
-        self.pass(regime, 0.0, total, |equations, mut states, inputs| {
+        self.pass(regime, 0.0, total, Mat::new(), |equations, mut states, inputs| {
             equations.correct(&mut states, inputs, duration);
             (states, 0.0)
         });
     }
 
     /// Takes disturbances along by the equations of a regime. Strains that neither move nor are disturbed,
-    /// those of contacts that slip under a constant limit, take no part.
+    /// those of contacts that slip under a constant limit, take no part. States stand in the room that is given; what
+    /// has become of it comes back.
     fn pass(
         &self,
         regime: &ContactState,
         pace: f64,
         total: &mut Mat<f64>,
+        room: Mat<f64>,
         along: impl FnOnce(&Equations, Mat<f64>, &Mat<f64>) -> (Mat<f64>, f64),
-    ) -> f64 {
+    ) -> (Mat<f64>, f64) {
         let first = 2 * self.weight.len();
         let mut disturbed = vec![false; total.nrows() - first];
         let mut columns = Vec::with_capacity(total.ncols());
@@ -57,7 +63,8 @@ impl Transition<'_> {
         }
         let own = self.equations(regime, pace, &disturbed);
         let factors: Vec<f64> = own.scale.iter().zip(&self.weight).map(|(s, w)| s / w).collect();
-        let mut states = Mat::zeros(first, columns.len());
+        let mut states = room;
+        states.resize_with(first, columns.len(), |_, _| 0.0);
         let mut inputs = Mat::zeros(own.strains.len(), columns.len());
         for (j, &column) in columns.iter().enumerate() {
             let (motion, strains) = total.col_as_slice(column).split_at(first);
@@ -79,7 +86,7 @@ impl Transition<'_> {
             let inputs = inputs.col_as_slice(j).iter().zip(&own.strains);
             inputs.for_each(|(g, strain)| strains[*strain] = *g);
         }
-        left
+        (states, left)
     }
 
     /// The equations in one state of the contacts, with all strains that move or are disturbed; in the units of

@@ -69,12 +69,23 @@ impl Driven {
 
     /// The same times states and inputs, one column each.
     pub(super) fn applied(&self, states: MatRef<'_, f64>, inputs: MatRef<'_, f64>) -> Mat<f64> {
+        let mut out = Mat::new();
+        self.write_applied(states, inputs, &mut out);
+        out
+    }
+
+    /// Writes it where there is room.
+    pub(super) fn write_applied(
+        &self,
+        states: MatRef<'_, f64>,
+        inputs: MatRef<'_, f64>,
+        out: &mut Mat<f64>,
+    ) {
         let size = states.nrows();
-        let mut out = Mat::zeros(size, states.ncols());
+        out.resize_with(size, states.ncols(), |_, _| 0.0);
         let (own, driven) = (self.rows.get(.., ..size), self.rows.get(.., size..));
         matmul(out.as_mut(), Accum::Replace, own, states, 1.0, Par::Seq);
         matmul(out.as_mut(), Accum::Add, driven, inputs, 1.0, Par::Seq);
-        out
     }
 }
 

@@ -61,10 +61,19 @@ impl Transition<'_> {
         let count = nodes(0.5 * lag.abs() * self.system.rate(0.0));
         let rule = known.quadrature.rule(count);
         let times: Vec<f64> = rule.iter().map(|(share, _)| share * lag).collect();
-        let back: Vec<f64> = times.iter().map(|s| -s).collect();
         let jump = phase.onset.as_ref().and_then(|onset| self.jump_of(onset));
         let columns = changed.len() * count + usize::from(jump.is_some());
         let [mut gains, mut forms] = [(); 2].map(|()| Mat::<f64>::zeros(size, columns));
+        // What a spring loses and what its event does are often the same but for a factor.
+        let same = match (changed, jump.as_ref().map(|jump| jump.gains.as_slice())) {
+            ([Change { strains, .. }], Some([(at, by)])) => match strains[..] {
+                [(strain, rate)] if strain == *at => Some(by / rate),
+                _ => None,
+            },
+            _ => None,
+        };
+        let mut back: Vec<f64> = times.iter().map(|s| -s).collect();
+        back.extend(same.map(|_| -lag));
         for (number, Change { point, strains }) in changed.iter().enumerate() {
             let place = number * count;
             let (mut gain, mut form) = (vec![0.0; size], vec![0.0; size]);
@@ -80,7 +89,13 @@ impl Transition<'_> {
             let (mut gain, mut form) = (vec![0.0; size], vec![0.0; size]);
             jump.gains.iter().for_each(|(at, by)| gain[*at] += by);
             jump.form.iter().for_each(|(at, by)| form[*at] += by);
-            new.write_series(gain, &[-lag], false, (&mut gains, columns - 1));
+            match same {
+                Some(factor) => {
+                    let own = gains.col_as_slice_mut(columns - 1);
+                    own.iter_mut().for_each(|x| *x *= factor);
+                }
+                None => new.write_series(gain, &[-lag], false, (&mut gains, columns - 1)),
+            }
             old.write_series(form, &[lag], true, (&mut forms, columns - 1));
         }
         let mut shares = Mat::<f64>::zeros(columns, total.ncols());

@@ -48,6 +48,8 @@ pub(crate) struct Propagators {
     /// The frequency whose motions have the units of displacements that all exponentials have \[rad/s\].
     pub(super) pace: f64,
     pub(super) quadrature: Quadrature,
+    /// Room for states: a stretch finds that of the one before in the cache.
+    pub(super) spare: Vec<Mat<f64>>,
 }
 
 /// How far the end of a step may be from that of its stretch, in units of the fastest rate.
@@ -288,12 +290,16 @@ impl Propagators {
         states: Mat<f64>,
         inputs: &Mat<f64>,
     ) -> (Mat<f64>, f64) {
+        let mut out = self.spare.pop().unwrap_or_else(Mat::new);
         if let Some(own) = self.known(&equations.strains, regime, [duration, close]) {
-            let states = own.exponential.applied(states.as_ref(), inputs.as_ref());
-            return (states, duration - own.duration);
+            own.exponential.write_applied(states.as_ref(), inputs.as_ref(), &mut out);
+            let left = duration - own.duration;
+            self.spare.push(states);
+            return (out, left);
         }
         let exponential = equations.exponential(duration);
-        let states = exponential.applied(states.as_ref(), inputs.as_ref());
+        exponential.write_applied(states.as_ref(), inputs.as_ref(), &mut out);
+        self.spare.push(states);
         self.keep(Propagator {
             points: regime.points.clone(),
             strains: equations.strains.clone(),
@@ -302,7 +308,7 @@ impl Propagators {
             exponential,
             served: self.stretches,
         });
-        (states, 0.0)
+        (out, 0.0)
     }
 
     /// Keeps an exponential in the place of those that have not served for longest.

@@ -43,3 +43,62 @@ impl Shooting<'_> {
         std::mem::take(&mut self.beside) > 0
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::{ContactLaw, Jenkins};
+    use crate::model::{Contact, Model};
+    use crate::motion::{ModalSystem, State};
+    use crate::solve::System as _;
+    use crate::structure::{HarmonicLoad, Structure};
+    use faer::{c64, Mat};
+
+    /// A chain of twelve masses, eight of them on Jenkins elements.
+    fn system() -> ModalSystem {
+        let size = 12;
+        let stiffness = Mat::from_fn(size, size, |i, j| match i.abs_diff(j) {
+            0 => 900.0 + 70.0 * i as f64,
+            1 => -400.0,
+            _ => 0.0,
+        });
+        let [mass, damping] =
+            [1.0, 0.3].map(|factor| faer::Scale(factor) * Mat::<f64>::identity(size, size));
+        let structure = Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref());
+        let contact = |i: usize| {
+            let law: Box<dyn ContactLaw> =
+                Box::new(Jenkins::new(150.0, 1.0 + 0.7 * i as f64).unwrap());
+            Contact { law, rows: Mat::from_fn(1, size, |_, j| f64::from(u8::from(i == j))) }
+        };
+        let amplitude = (0..size).map(|i| c64::new(12.0 + i as f64, 0.0)).collect();
+        let loads = vec![HarmonicLoad { harmonic: 1, amplitude }];
+        let contacts = (0..8).map(contact).collect();
+        ModalSystem::new(&Model::new(structure.unwrap(), contacts, loads).unwrap()).unwrap()
+    }
+
+    /// Values beside a residual whose derivative is known take no step of the flow, and are those of a pass; until
+    /// they are no more trusted.
+    #[test]
+    fn values_beside_a_residual_take_no_pass() {
+        let system = system();
+        for half_wave in [true, false] {
+            let mut shooting = Shooting::new(&system, 1.3, half_wave, None);
+            let mut y = shooting.unknowns(&State::rest(&system));
+            assert!(shooting.settle(&mut y, 4));
+            let [mut residual, mut step] = [(); 2].map(|()| vec![0.0; y.len()]);
+            shooting.residual(&y, &mut residual);
+            assert!(shooting.solve(&residual, &mut step));
+            let near: Vec<f64> = y.iter().zip(&step).map(|(y, step)| y - 1e-2 * step).collect();
+            let before = shooting.flow.steps;
+            let [mut found, mut expected] = [(); 2].map(|()| vec![0.0; y.len()]);
+            shooting.value(&near, &mut found);
+            assert_eq!(shooting.flow.steps, before);
+            assert!(shooting.distrust());
+            shooting.value(&near, &mut expected);
+            assert!(shooting.flow.steps > before);
+            let error: Vec<f64> = found.iter().zip(&expected).map(|(a, b)| a - b).collect();
+            assert!(norm(&error) < 1e-13 * norm(&y), "{half_wave} {:e}", norm(&error) / norm(&y));
+            assert!(!shooting.distrust());
+        }
+    }
+}
