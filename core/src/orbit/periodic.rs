@@ -230,7 +230,8 @@ impl<'a> PeriodicOrbits<'a> {
             return Ok(self.empty(omega, PointStatus::NotComputed));
         }
         // The last step of Newton's method was not looked at, nor was what an image beside another left out.
-        let missed = chosen == Chosen::Inside && !(read.error <= self.newton().tolerance);
+        let beyond = read.error.is_nan() || read.error > self.newton().tolerance;
+        let missed = chosen == Chosen::Inside && beyond;
         if missed && (shooting.distrust() || read.closing <= NEARLY) {
             let mut closer = y.clone();
             let report = newton(shooting, &mut closer, self.newton());
