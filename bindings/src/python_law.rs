@@ -163,6 +163,10 @@ impl ContactLaw for PythonLaw {
     }
 
     /// Nothing is known of them: there may be some.
+    fn is_serial(&self) -> bool {
+        true
+    }
+
     fn limits(&self) -> Vec<f64> {
         vec![f64::MAX; self.displacements()]
     }

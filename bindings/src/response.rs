@@ -11,12 +11,12 @@ use pyo3::prelude::*;
 use std::mem::take;
 use std::sync::Arc;
 use stickslip_core::balance::{
-    self, in_order, sweep, sweep_range, CurveEnd, ForcedBalance, HarmonicChoice, Kept, Point,
-    PointStatus, Progress, Settings, HIGHEST_ORDER,
+    self, in_order, sweep, CurveEnd, ForcedBalance, HarmonicChoice, Kept, Point, PointStatus,
+    Progress, Settings, HIGHEST_ORDER,
 };
 use stickslip_core::design::bound;
 use stickslip_core::fourier::{self, Harmonics, Measure, SampleTable};
-use stickslip_core::orbit::{decide_stability, sweep_in_pieces, OrbitInitialGuess};
+use stickslip_core::orbit::{decide_stability, sweep_in_pieces, sweep_range_in_pieces, Balances};
 use stickslip_core::solve::NewtonSettings;
 use stickslip_core::timing::Profile;
 use stickslip_core::{Error, Model};
@@ -53,9 +53,6 @@ pub fn keeping<K: Send + Sync + 'static, T: Send + 'static>(
     let points = kept.lock().map(|mut points| take(&mut *points)).unwrap_or_default();
     rest(points).ok_or_else(given_up)
 }
-
-/// What is asked of a balance.
-type Work<'w> = dyn Fn(ForcedBalance<'_>) -> Result<balance::Solution, Error> + Sync + 'w;
 
 /// Runs a sweep, over the frequencies `order` if they were given; Ctrl-C keeps what was solved.
 fn swept<'py>(
@@ -146,23 +143,12 @@ pub fn forced_response<'py>(
         Frequencies::Grid(grid) => grid.clone(),
     };
     swept(py, progress, observe.len(), &problem.model, &order, move |model, kept, look| {
-        let solved = |look: &Progress<'_>, work: &Work<'_>| {
-            let orbits = OrbitInitialGuess::new(model, settings.residual, &observe, look);
-            let balance = ForcedBalance::new(model, settings, &observe)?
-                .watched(look)
-                .rescued(&orbits)
-                .driven_by(&driving)
-                .keeping(kept)
-                .with_further_branches();
-            work(balance)
-        };
+        let balances = Balances::new(model, settings, (&observe, &driving), kept)?;
         let mut found = match omega {
-            Frequencies::Range((from, to)) => {
-                solved(look, &|balance| sweep_range(balance, from, to))
-            }
+            Frequencies::Range(range) => sweep_range_in_pieces(&balances, range, look),
             Frequencies::Grid(grid) => {
                 sweep_in_pieces(model, &settings, &grid, look, |piece, look| {
-                    solved(look, &|balance| sweep(balance, piece))
+                    balances.with(look, |balance| sweep(balance, piece))
                 })
             }
         }?;

@@ -16,8 +16,20 @@ import numpy as np
 import stickslip as ss
 from stickslip.reference import beam_ring, snecma_beam
 
+
+# Forty masses in a row, each with a Jenkins element to the ground.
+def chain():
+    names = [f"q{{place}}" for place in range(40)]
+    stiff = 2e3 * (2.0 * np.eye(40) - np.eye(40, k=1) - np.eye(40, k=-1))
+    structure = ss.Structure(np.eye(40), stiff, ss.Rayleigh(mass=0.8, stiffness=1e-4), names)
+    limits = np.geomspace(0.3, 6.0, 40)
+    contacts = [ss.Jenkins(q, stiffness=500.0, slip_force=f) for q, f in zip(names, limits)]
+    return ss.Model(structure, contacts, [ss.Force("q20", 30.0)])
+
+
 swept = {sweep}
 numbers = np.concatenate([swept.amplitude(dof) for dof in swept.dofs])
+numbers = np.concatenate([swept.omega, numbers])
 sys.stdout.write(f"{{numbers.tobytes().hex()}} {{swept.counters}}")
 """
 
@@ -43,6 +55,15 @@ def test_balances_of_a_long_sweep_in_pieces() -> None:
     alone = swept(1, sweep)
     assert len(alone) > 400 * 16
     assert swept(3, sweep) == alone
+
+
+@pytest.mark.slow
+def test_a_range_in_pieces() -> None:
+    sweep = "ss.forced_response(chain(), (24.0, 32.0), harmonics=7)"
+    alone = swept(1, sweep)
+    assert len(alone) > 2 * 60 * 16
+    assert swept(2, sweep) == alone
+    assert swept(4, sweep) == alone
 
 
 def test_points_of_pieces_are_those_of_their_frequencies() -> None:

@@ -2,7 +2,7 @@
 
 use super::condensed::Condensed;
 use super::evaluation::{Evaluated, Evaluations};
-use super::history::with_history;
+use super::history::history_of;
 use super::neighbour::Neighbour;
 use super::resolution_control::{Level, ResolutionControl};
 use super::scale::Scale;
@@ -11,7 +11,6 @@ use super::solution::{Point, PointStatus};
 use super::tangent::Tangent;
 use super::unknowns::Unknowns;
 use super::{ExactOrbits, Kept, Progress};
-use crate::contact::Residual;
 use crate::fourier::{Harmonics, SampleTable};
 use crate::model::Model;
 use crate::solve::System as _;
@@ -74,16 +73,26 @@ impl<'a> ForcedBalance<'a> {
     /// Settings outside their range, a DOF that does not exist, or a mean displacement that
     /// rigid-body motion leaves undefined.
     pub fn new(model: &'a Model, settings: Settings, observe: &'a [usize]) -> Result<Self, Error> {
+        let known = history_of(model, &settings)?;
+        Self::with_known_history(model, known, settings, observe)
+    }
+
+    /// [`ForcedBalance::new`] of a model whose friction has a history that is known.
+    ///
+    /// # Errors
+    /// As there.
+    pub(crate) fn with_known_history(
+        model: &'a Model,
+        known: Option<Arc<Model>>,
+        settings: Settings,
+        observe: &'a [usize],
+    ) -> Result<Self, Error> {
         let forced = model.compliance().forced_harmonics();
         let settings = settings.suited(model);
         settings.check(&forced)?;
         settings.check_resolution(model.resolves())?;
         Error::check_dofs(observe, model.compliance().dofs())?;
-        let model = match settings.residual {
-            Residual::FromRest => with_history(model)?.map(Arc::new).map(Evaluated::Made),
-            Residual::Centred | Residual::Value(_) => None,
-        }
-        .unwrap_or(Evaluated::Given(model));
+        let model = known.map_or(Evaluated::Given(model), Evaluated::Made);
         let half_wave = model.is_symmetric() && settings.residual.is_symmetric();
         if !half_wave {
             model.compliance().require_grounded()?;
@@ -183,6 +192,11 @@ impl<'a> ForcedBalance<'a> {
     pub(crate) fn into_memory(self) -> WarmStart {
         let Self { tables, control, half_wave, profile, .. } = self;
         WarmStart { tables, level: control.level, half_wave, profile }
+    }
+
+    /// The account of its work.
+    pub(crate) fn into_profile(self) -> Profile {
+        self.profile
     }
 
     /// Whether only odd harmonics are solved for.

@@ -1,9 +1,11 @@
 //! Friction with the history that it has from static loads.
 
+use super::settings::Settings;
 use super::statics::{static_response, RestStatus};
-use crate::contact::ContactLaw;
+use crate::contact::{ContactLaw, Residual};
 use crate::model::Model;
 use crate::Error;
+use std::sync::Arc;
 
 /// The model with friction that has its history from its static loads; nothing if it has no such
 /// loads, no law that keeps it, or no equilibrium under them.
@@ -27,4 +29,15 @@ pub fn with_history(model: &Model) -> Result<Option<Model>, Error> {
         law.with_history(displacement, state).unwrap_or_else(|| law.with_scaled_forces(1.0))
     });
     model.with_laws(laws.collect()).map(Some)
+}
+
+/// The history that a balance with these settings starts from, if any.
+///
+/// # Errors
+/// As [`with_history`].
+pub(crate) fn history_of(model: &Model, settings: &Settings) -> Result<Option<Arc<Model>>, Error> {
+    match settings.residual {
+        Residual::FromRest => Ok(with_history(model)?.map(Arc::new)),
+        Residual::Centred | Residual::Value(_) => Ok(None),
+    }
 }

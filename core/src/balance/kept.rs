@@ -13,6 +13,14 @@ pub(crate) fn keep<T>(kept: Option<&Kept<T>>, point: &Arc<T>) {
     }
 }
 
+/// Keeps these points and no others.
+pub(crate) fn keep_instead<T>(kept: Option<&Kept<T>>, points: &[Arc<T>]) {
+    if let Some(Ok(mut kept)) = kept.map(Mutex::lock) {
+        kept.clear();
+        kept.extend_from_slice(points);
+    }
+}
+
 /// Brings points that were kept as they were found into the order of the frequencies of their sweep; those of
 /// one frequency, to which it may come back, stay in theirs.
 pub fn in_order<T>(points: &mut [Arc<T>], order: &[f64], omega: impl Fn(&T) -> f64) {

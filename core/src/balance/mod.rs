@@ -51,6 +51,7 @@ pub use cycle::{CycleBalance, Onset};
 pub(crate) use evaluation::Evaluated;
 pub use forced::ForcedBalance;
 pub(crate) use forced::WarmStart;
+pub(crate) use history::history_of;
 pub use history::with_history;
 pub(crate) use kept::keep;
 pub use kept::{in_order, Kept};
@@ -58,7 +59,7 @@ pub(crate) use limit_load::{is_carried_away, is_let_go};
 pub use linearised::{Cause, FrequencyJets, Linearised};
 pub(crate) use peak::brent;
 pub use peak::refine_peak;
-pub(crate) use price::work_of_given;
+pub(crate) use price::{work_of_given, MUCH};
 pub use settings::{
     Evaluation, HarmonicChoice, Method, Resolution, SampleChoice, Settings, HIGHEST_ORDER,
 };
@@ -67,6 +68,9 @@ pub(crate) use slider_start::{HeldMotion, SliderBalance};
 pub use solution::{AmplitudeBounds, CurveEnd, Point, PointStatus, Solution, Uniqueness};
 pub(crate) use statics::{slip_load, Level, Loading};
 pub use statics::{static_response, AtRest, RestStatus};
+pub(crate) use sweep::{
+    branch_piece, check_range, join_branches, join_smooth, seam, seams, smooth_piece, Course, Piece,
+};
 pub(crate) use sweep::{check_bracket, check_frequencies, over_frequencies};
 pub use sweep::{sweep, sweep_range};
 pub use unknowns::Unknowns;

@@ -111,6 +111,11 @@ pub trait ContactLaw: Send + Sync + std::fmt::Debug {
     /// all are has one steady motion.
     fn is_monotone(&self) -> bool;
 
+    /// Whether one thread at a time alone can evaluate the law, so that several would wait for one another.
+    fn is_serial(&self) -> bool {
+        false
+    }
+
     /// Largest force that every component can have \[N\]: 0 if it never carries any, infinite if it
     /// never slips.
     fn limits(&self) -> Vec<f64>;

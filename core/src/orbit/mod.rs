@@ -1,6 +1,7 @@
 //! Exact periodic orbits by shooting with the exact flow, and their Floquet multipliers: no
 //! harmonic is discarded, so that they judge the harmonic balance.
 
+mod balances;
 mod beside;
 mod closed;
 mod closing;
@@ -18,6 +19,7 @@ mod periodic;
 mod pieces;
 mod plan;
 mod price;
+mod range;
 mod reading;
 mod remembered_turns;
 mod rescue;
@@ -32,6 +34,7 @@ mod start;
 mod survey;
 mod sweep;
 
+pub use balances::Balances;
 pub use closed::Orbit;
 pub use curve_stability::decide_stability;
 pub use cycle::{
@@ -41,6 +44,7 @@ pub use cycle::{
 pub use period_map::{Multipliers, PeriodMap};
 pub use periodic::PeriodicOrbits;
 pub use pieces::sweep_in_pieces;
+pub use range::sweep_range_in_pieces;
 pub use rescue::OrbitInitialGuess;
 pub use rotation::Rotation;
 pub use settings::OrbitSettings;

@@ -6,6 +6,7 @@
 
 use crate::balance::{
     check_frequencies, work_of_given, CurveEnd, Point, PointStatus, Progress, Settings, Solution,
+    MUCH,
 };
 use crate::contact::Residual;
 use crate::model::Model;
@@ -19,10 +20,6 @@ use std::time::Instant;
 
 /// Most points that are found one from the other where each could be found by itself.
 const PIECE: usize = 16;
-
-/// Operations of a sweep from which it is cut, some tenths of a second: the start of a piece costs as much as
-/// two or three other points.
-const MUCH: f64 = 2e9;
 
 /// A sweep of some points in pieces of about the same length.
 pub(super) fn pieces(points: usize) -> Vec<Range<usize>> {

@@ -1,8 +1,9 @@
 //! A curve over a range of frequencies, with steps chosen to the tolerance.
 
 use super::branches::sweep_branches;
+use super::course::Course;
 use super::given::finish;
-use super::stops::{stops, LONGEST};
+use super::seams::expected_step;
 use crate::balance::condensed::Condensed;
 use crate::balance::forced::ForcedBalance;
 use crate::balance::keep;
@@ -32,64 +33,124 @@ const ASIDE: f64 = 1e-8;
 /// As for a sweep over given frequencies; a range of no length.
 pub fn sweep_range(mut balance: ForcedBalance<'_>, from: f64, to: f64) -> Result<Solution, Error> {
     let start = Instant::now();
+    check_range((from, to))?;
+    if !balance.model.is_monotone() {
+        return sweep_branches(balance, (from, to));
+    }
+    let first = Arc::new(balance.solve(from, None)?);
+    let course = Course::new(&mut balance, std::slice::from_ref(&first), (from, to))?;
+    let (points, interrupted) = smooth_piece(&mut balance, &course, first, None)?;
+    Ok(finish(balance, points, interrupted, start))
+}
+
+/// Refuses a range of no length, or of frequencies that are not positive.
+pub(crate) fn check_range((from, to): (f64, f64)) -> Result<(), Error> {
     Error::check_frequency("omega range: start", from)?;
     Error::check_frequency("omega range: end", to)?;
     if from == to {
         return Err(Error::value("omega range: end", to, "must differ from its start"));
     }
+    Ok(())
+}
+
+/// The point of a seam, which starts from nothing.
+///
+/// # Errors
+/// As for a solution at one frequency.
+pub(crate) fn seam(balance: &mut ForcedBalance<'_>, omega: f64) -> Result<Point, Error> {
+    balance.solve_beside(omega, ASIDE * omega, None)
+}
+
+/// The part of a curve from a point of it to another one, its last, or to the end of its range; whether it
+/// was ended early.
+///
+/// # Errors
+/// As for a solution at one frequency.
+pub(crate) fn smooth_piece(
+    balance: &mut ForcedBalance<'_>,
+    course: &Course,
+    first: Arc<Point>,
+    last: Option<&Arc<Point>>,
+) -> Result<(Vec<Arc<Point>>, bool), Error> {
+    course.lead(balance);
+    let ((from, to), longest) = (course.range, course.longest());
     let direction = (to - from).signum();
-    let longest = LONGEST * (to - from).abs();
-    if !balance.model.is_monotone() {
-        return sweep_branches(balance, (from, to));
-    }
-    let mut points = vec![Arc::new(balance.solve(from, None)?)];
-    balance.scale.include(&points[0]);
+    let begin = first.omega;
+    let end = last.map_or(to, |last| last.omega);
+    let mut points = vec![first];
     keep(balance.kept, &points[0]);
     // What lies outside the range may be narrow, too.
     let fine = balance.model.compliance().narrowest_bandwidth().max(1e-6 * longest);
-    let mut step = fine.min(0.1 * longest);
-    let mut interrupted = false;
-    for (stop, bandwidth) in stops(&mut balance, &points[0], from, to)? {
-        if interrupted {
-            break;
+    let mut step = if begin == from {
+        fine.min(0.1 * longest)
+    } else {
+        expected_step(&course.stops, balance.settings.tolerance, longest, begin)
+    };
+    let stops: Vec<(f64, f64)> = course.between(begin, end).collect();
+    let mut passed = 0;
+    while let Some(&(stop, _)) = stops.get(passed) {
+        let known = &points[points.len() - 1];
+        if !balance.report((known.omega - begin) / (end - begin)) {
+            return Ok((points, true));
         }
-        while (stop - points[points.len() - 1].omega) * direction > 0.0 {
-            let last = &points[points.len() - 1];
-            if !balance.report((last.omega - from) / (to - from)) {
-                interrupted = true;
-                break;
+        let room = (stop - known.omega).abs();
+        // Two even steps instead of a long and a tiny one.
+        let length =
+            if step >= room { room } else { step.min(0.5 * room).max(SHORTEST * known.omega) };
+        let omega = if step >= room { stop } else { known.omega + direction * length };
+        let point = match last.filter(|last| last.omega == omega) {
+            Some(last) => Point::clone(last),
+            None => {
+                let guess = tangent(balance, known, omega);
+                balance.solve_beside(omega, direction * ASIDE * omega, guess.as_ref())?
             }
-            let room = (stop - last.omega).abs();
-            // Two even steps instead of a long and a tiny one.
-            let length =
-                if step >= room { room } else { step.min(0.5 * room).max(SHORTEST * last.omega) };
-            let omega = if step >= room { stop } else { last.omega + direction * length };
-            let guess = tangent(&mut balance, last, omega);
-            let point = balance.solve_beside(omega, direction * ASIDE * omega, guess.as_ref())?;
-            if point.status == PointStatus::NotComputed {
-                interrupted = true;
-                break;
-            }
-            let target = balance.settings.tolerance;
-            // Nothing is known of the bend at the start, where the step stays, nor behind a point
-            // that is not solved, where it grows to get past.
-            let unknown = if point.is_solved() { 0.81 * target } else { 0.0 };
-            let error = line_error(&balance, &points, &point).unwrap_or(unknown);
-            let factor = (0.9 * (target / error.max(1e-12)).sqrt()).clamp(0.3, 2.0);
-            let too_long = error > 2.0 * target && length > 1.5 * SHORTEST * omega;
-            step = (length * factor).min(longest);
-            if !too_long {
-                if point.is_solved() {
-                    balance.scale.include(&point);
-                }
-                let point = Arc::new(point);
-                keep(balance.kept, &point);
-                points.push(point);
-            }
+        };
+        if point.status == PointStatus::NotComputed {
+            return Ok((points, true));
         }
-        step = step.min(bandwidth.max(1e-6 * longest));
+        let target = balance.settings.tolerance;
+        // Nothing is known of the bend at the start, where the step stays, nor behind a point
+        // that is not solved, where it grows to get past.
+        let unknown = if point.is_solved() { 0.81 * target } else { 0.0 };
+        let error = line_error(balance, &points, &point).unwrap_or(unknown);
+        let factor = (0.9 * (target / error.max(1e-12)).sqrt()).clamp(0.3, 2.0);
+        let too_long = error > 2.0 * target && length > 1.5 * SHORTEST * omega;
+        step = (length * factor).min(longest);
+        if too_long {
+            continue;
+        }
+        if begin != from && points.len() == 2 && is_bent(balance, &points, &point) {
+            // Behind a seam a third point shows the bend of the first step.
+            step = 0.3 * (points[1].omega - begin).abs();
+            points.truncate(1);
+            passed = 0;
+            continue;
+        }
+        if point.is_solved() {
+            balance.scale.include(&point);
+        }
+        let here = point.omega;
+        let point = Arc::new(point);
+        keep(balance.kept, &point);
+        points.push(point);
+        while let Some((_, bandwidth)) =
+            stops.get(passed).filter(|s| (s.0 - here) * direction <= 0.0)
+        {
+            step = step.min(bandwidth.max(1e-6 * longest));
+            passed += 1;
+        }
     }
-    Ok(finish(balance, points, interrupted, start))
+    Ok((points, false))
+}
+
+/// Whether the first of two steps was too long, as the point behind the second one shows.
+fn is_bent(balance: &ForcedBalance<'_>, points: &[Arc<Point>], new: &Point) -> bool {
+    let [first, second] = points else { return false };
+    let back: [&Point; 3] = [new, second, first];
+    let steps = [(new.omega - second.omega).abs(), (second.omega - first.omega).abs()];
+    back.into_iter().all(Point::is_solved)
+        && steps[1] > 1.5 * SHORTEST * first.omega
+        && balance.scale.of_line(back, steps) > 2.0 * balance.settings.tolerance
 }
 
 /// Extrapolation along the tangent `dU/dω = J⁻¹ (dU^stuck/dω + dG/dω Q)`.

@@ -2,6 +2,7 @@
 //! around its folds, with steps chosen to the tolerance. It ends where it leaves the range, at either end, or
 //! where it closes.
 
+use super::course::Course;
 use super::forced_curve::ForcedCurve;
 use super::stops::{stops, LONGEST};
 use crate::balance::forced::ForcedBalance;
@@ -53,12 +54,67 @@ pub(super) fn branch_through(
     (from, to): (f64, f64),
     bounds: (f64, f64),
 ) -> Result<(Vec<Arc<Point>>, CurveEnd), Error> {
-    // What estimates have learnt is of another motion.
-    balance.neighbour = Default::default();
     let stops = stops(balance, &first, from, to)?;
     let longest = LONGEST * (bounds.1 - bounds.0);
     let inside = bounds.0 < from && from < bounds.1;
-    let points = vec![first];
+    walk(balance, first, (to, bounds, inside), (stops, longest))
+}
+
+/// The part of a branch from a point of its course to the frequency of another one, or to the end of the range,
+/// and how it ended.
+///
+/// # Errors
+/// As for a solution at one frequency.
+pub(crate) fn branch_piece(
+    balance: &mut ForcedBalance<'_>,
+    course: &Course,
+    first: Arc<Point>,
+    last: Option<&Arc<Point>>,
+) -> Result<(Vec<Arc<Point>>, CurveEnd), Error> {
+    if !first.is_solved() {
+        let ended = first.status == PointStatus::NotComputed;
+        let end = if ended { CurveEnd::Interrupted } else { CurveEnd::Stalled };
+        return Ok((vec![first], end));
+    }
+    let (from, to) = (first.omega, last.map_or(course.range.1, |last| last.omega));
+    let bounds = (from.min(to), from.max(to));
+    from_seam(balance, course, first, (to, bounds))
+}
+
+/// The branch from a point of its course towards the end of the range, around all its folds.
+///
+/// # Errors
+/// As for a solution at one frequency.
+pub(super) fn branch_on(
+    balance: &mut ForcedBalance<'_>,
+    course: &Course,
+    first: Arc<Point>,
+) -> Result<(Vec<Arc<Point>>, CurveEnd), Error> {
+    let (from, to) = course.range;
+    from_seam(balance, course, first, (to, (from.min(to), from.max(to))))
+}
+
+fn from_seam(
+    balance: &mut ForcedBalance<'_>,
+    course: &Course,
+    first: Arc<Point>,
+    (to, bounds): (f64, (f64, f64)),
+) -> Result<(Vec<Arc<Point>>, CurveEnd), Error> {
+    course.lead(balance);
+    keep(balance.kept, &first);
+    // It comes from the end of the range, so that it cannot close.
+    walk(balance, first, (to, bounds, false), (course.stops.clone(), course.longest()))
+}
+
+fn walk(
+    balance: &mut ForcedBalance<'_>,
+    first: Arc<Point>,
+    (to, bounds, inside): (f64, (f64, f64), bool),
+    (stops, longest): (Vec<(f64, f64)>, f64),
+) -> Result<(Vec<Arc<Point>>, CurveEnd), Error> {
+    // What estimates have learnt is of another motion.
+    balance.neighbour = Default::default();
+    let (from, points) = (first.omega, vec![first]);
     let mut walk =
         Walk { balance, points, inside, stops, bounds, longest, raised: 0, evaluations: 0 };
     let end = walk.follow(from, to)?;

@@ -17,7 +17,17 @@ pub(super) fn sweep_branches(
     (from, to): (f64, f64),
 ) -> Result<Solution, Error> {
     let start = Instant::now();
-    let (mut points, mut end) = branch(&mut balance, from, to)?;
+    let first = branch(&mut balance, from, to)?;
+    with_others(balance, first, (from, to), start)
+}
+
+/// A curve of its first branch, or of that from the other end where it leads nowhere, and of further ones.
+pub(super) fn with_others(
+    mut balance: ForcedBalance<'_>,
+    (mut points, mut end): (Vec<Arc<Point>>, CurveEnd),
+    (from, to): (f64, f64),
+    start: Instant,
+) -> Result<Solution, Error> {
     if matches!(end, CurveEnd::Returned | CurveEnd::Stalled) {
         let (mut others, other_end) = branch(&mut balance, to, from)?;
         if other_end == CurveEnd::Range {

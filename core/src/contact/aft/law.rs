@@ -227,6 +227,7 @@ impl ContactLaw for Aft<Box<dyn ContactLaw>> {
         state_stiffness() -> Mat<f64>;
         is_odd() -> bool;
         is_monotone() -> bool;
+        is_serial() -> bool;
         limits() -> Vec<f64>;
         planes() -> Vec<[usize; 2]>;
         grows() -> Vec<bool>;
