@@ -162,11 +162,12 @@ impl ContactLaw for PythonLaw {
         self.monotone
     }
 
-    /// Nothing is known of them: there may be some.
+    /// The interpreter works for one thread at a time.
     fn is_serial(&self) -> bool {
         true
     }
 
+    /// Nothing is known of them: there may be some.
     fn limits(&self) -> Vec<f64> {
         vec![f64::MAX; self.displacements()]
     }
