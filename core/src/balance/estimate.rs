@@ -55,16 +55,15 @@ impl ForcedBalance<'_> {
     /// Completes the estimate of a point that lacked samples, but is the last one all the same.
     pub(super) fn complete_estimate(&mut self, point: &mut Point) -> Result<(), Error> {
         let lacks = point.samples.is_some() && point.error_estimate == point.sampling_error;
-        let Some(solution) = point.unknowns.clone().filter(|_| lacks && point.is_solved()) else {
-            return Ok(());
-        };
+        let solution = point.unknowns.as_ref().filter(|_| lacks && point.is_solved());
+        let Some(solution) = solution.cloned() else { return Ok(()) };
         let sampling = std::mem::take(&mut point.sampling_error);
         self.estimate_truncation(&solution.harmonics, &solution.values, None, point)?;
         add_sampling(point, sampling);
         Ok(())
     }
 
-    /// What a march through more samples would change in a solution; nothing of laws that are evaluated as they
+    /// What a march through more samples would change in a solution; empty of laws that are evaluated as they
     /// are.
     fn sampling_errors(
         &mut self,
@@ -72,7 +71,7 @@ impl ForcedBalance<'_> {
         x: &[f64],
         point: &Point,
     ) -> Result<Vec<f64>, Error> {
-        let Some(samples) = point.samples else { return Ok(vec![0.0; self.observe.len()]) };
+        let Some(samples) = point.samples else { return Ok(Vec::new()) };
         if self.settings.method != Method::Newton {
             // Broyden's method leaves no tangent at the solution.
             equations.residual(x, &mut vec![0.0; x.len()]);
@@ -186,6 +185,9 @@ fn leaves_springs(solved: &Condensed<'_>, x: &[f64]) -> bool {
 
 /// Adds the sampling error to an estimate.
 fn add_sampling(point: &mut Point, sampling: Vec<f64>) {
+    if sampling.is_empty() {
+        return;
+    }
     point.error_estimate.iter_mut().zip(&sampling).for_each(|(error, own)| *error += own);
     point.sampling_error = sampling;
 }
