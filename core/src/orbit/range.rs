@@ -53,11 +53,12 @@ pub fn sweep_range_in_pieces(
             Ok((Arc::new(point), balance.into_profile()))
         })
     });
-    let (mut ends, mut profile) = (Vec::new(), Profile::default());
+    let (mut ends, mut profile, mut ended) = (Vec::new(), Profile::default(), false);
     for (number, found) in found.into_iter().enumerate() {
         match found {
             Ok((point, own)) => {
                 profile.add_whole(&own);
+                ended |= point.status == PointStatus::NotComputed;
                 if number == 0 || point.status == PointStatus::Converged {
                     ends.push(point);
                 }
@@ -70,7 +71,8 @@ pub fn sweep_range_in_pieces(
         balances.lent(progress, |mut balance| Course::new(&mut balance, &ends, (from, to)))?;
     let rest = |share: f64| progress(SEAMS + (1.0 - SEAMS) * share);
     let found = in_parts(ends.len(), &rest, |number, look| {
-        piece(balances, &course, &ends, number, smooth, look)
+        // Without all seams the pieces would be others.
+        piece(balances, &course, &ends, number, smooth, &|share| !ended && look(share))
     });
     let pieces: Vec<Piece> = found.into_iter().collect::<Result<_, _>>()?;
     balances.with(&|_| progress(1.0), |mut balance| {
