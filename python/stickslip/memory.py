@@ -11,8 +11,8 @@ from stickslip.errors import ModelError
 SHARE = 0.75
 """Share of the memory that an analysis may take."""
 
-COPIES = 4.2
-"""Copies of a result while it is saved: itself, its dataset, the file, and the room it grows in."""
+COPIES = 3.2
+"""Copies of a result while it is saved: itself, its dataset, the file in the room it grows in."""
 
 _PER_POINT = 80
 """Numbers that a point of the core takes beside its own: vectors, their allocation, its status."""
@@ -44,7 +44,8 @@ def require_numbers(numbers: int, what: str, remedy: str, *, core: int | None = 
     It holds `numbers` of eight bytes each, and is made from as many or `core` others; `what` names
     the entry that makes it large, and `remedy` how to need fewer.
     """
-    needed = 8 * max((numbers if core is None else core) + numbers, COPIES * numbers)
+    # What the core has freed may lie in holes between what threads still hold, beside the copies.
+    needed = 8 * ((numbers if core is None else core) + COPIES * numbers)
     there = physical_memory()
     if there is not None and needed > SHARE * there:
         raise ModelError(

@@ -325,7 +325,7 @@ result = {call}
 result.save({str(tmp_path / "file.nc")!r})
 needed, refuse = [], memory.require_numbers
 def reckon(numbers, *arguments, core=None):
-    needed.append(8 * max((numbers if core is None else core) + numbers, memory.COPIES * numbers))
+    needed.append(8 * ((numbers if core is None else core) + memory.COPIES * numbers))
 for module in list(sys.modules.values()):
     if getattr(module, "require_numbers", None) is refuse:
         module.require_numbers = reckon
