@@ -16,6 +16,10 @@ use std::time::Instant;
 
 /// Shortest step relative to the frequency.
 const SHORTEST: f64 = 1e-7;
+/// Distance of a straight line, in tolerances, up to which a step is good enough; …
+const FARTHEST: f64 = 2.0;
+/// … and up to which it is left alone if the point behind it shows the distance.
+const SEEN_BEHIND: f64 = 1.5;
 /// Distance, relative to the frequency, at which a step passes an undamped resonance.
 const ASIDE: f64 = 1e-8;
 
@@ -77,8 +81,7 @@ pub(crate) fn smooth_piece(
     let direction = (to - from).signum();
     let begin = first.omega;
     let end = last.map_or(to, |last| last.omega);
-    let mut points = vec![first];
-    keep(balance.kept, &points[0]);
+    let (mut points, mut kept) = (vec![first], 0);
     // What lies outside the range may be narrow, too.
     let fine = balance.model.compliance().narrowest_bandwidth().max(1e-6 * longest);
     let mut step = if begin == from {
@@ -112,27 +115,30 @@ pub(crate) fn smooth_piece(
         // Nothing is known of the bend at the start, where the step stays, nor behind a point
         // that is not solved, where it grows to get past.
         let unknown = if point.is_solved() { 0.81 * target } else { 0.0 };
-        let error = line_error(balance, &points, &point).unwrap_or(unknown);
+        let known = match &points[..] {
+            [.., before, last] => line_error(balance, [before, last, &point]),
+            _ => None,
+        };
+        let error = known.unwrap_or(unknown);
         let factor = (0.9 * (target / error.max(1e-12)).sqrt()).clamp(0.3, 2.0);
-        let too_long = error > 2.0 * target && length > 1.5 * SHORTEST * omega;
+        let too_long = error > FARTHEST * target && length > 1.5 * SHORTEST * omega;
         step = (length * factor).min(longest);
         if too_long {
-            continue;
-        }
-        if begin != from && points.len() == 2 && is_bent(balance, &points, &point) {
-            // Behind a seam a third point shows the bend of the first step.
-            step = 0.3 * (points[1].omega - begin).abs();
-            points.truncate(1);
-            passed = 0;
             continue;
         }
         if point.is_solved() {
             balance.scale.include(&point);
         }
         let here = point.omega;
-        let point = Arc::new(point);
-        keep(balance.kept, &point);
-        points.push(point);
+        let inside = inside(balance, &points, &point)?;
+        if inside.iter().any(|one| one.status == PointStatus::NotComputed) {
+            return Ok((points, true));
+        }
+        let last = points.len() - 1;
+        points.splice(last..last, inside);
+        points.push(Arc::new(point));
+        points[kept..points.len() - 1].iter().for_each(|one| keep(balance.kept, one));
+        kept = points.len() - 1;
         while let Some((_, bandwidth)) =
             stops.get(passed).filter(|s| (s.0 - here) * direction <= 0.0)
         {
@@ -140,17 +146,50 @@ pub(crate) fn smooth_piece(
             passed += 1;
         }
     }
+    points[kept..].iter().for_each(|one| keep(balance.kept, one));
     Ok((points, false))
 }
 
-/// Whether the first of two steps was too long, as the point behind the second one shows.
-fn is_bent(balance: &ForcedBalance<'_>, points: &[Arc<Point>], new: &Point) -> bool {
-    let [first, second] = points else { return false };
-    let back: [&Point; 3] = [new, second, first];
-    let steps = [(new.omega - second.omega).abs(), (second.omega - first.omega).abs()];
-    back.into_iter().all(Point::is_solved)
-        && steps[1] > 1.5 * SHORTEST * first.omega
-        && balance.scale.of_line(back, steps) > 2.0 * balance.settings.tolerance
+/// Points inside the last step, where the point behind it shows that a straight line is too far off: slip that
+/// begins makes a kink, which a step may end at before its curvature is seen.
+///
+/// # Errors
+/// As for a solution at one frequency.
+fn inside(
+    balance: &mut ForcedBalance<'_>,
+    points: &[Arc<Point>],
+    new: &Point,
+) -> Result<Vec<Arc<Point>>, Error> {
+    let mut found: Vec<Arc<Point>> = Vec::new();
+    let [.., before, last] = points else { return Ok(found) };
+    let step = last.omega - before.omega;
+    // The same line from its other end.
+    let seen = line_error(balance, [new, last, before]).unwrap_or(0.0);
+    let mut lines = vec![(Arc::clone(before), Arc::clone(last))];
+    lines.retain(|_| seen > SEEN_BEHIND * balance.settings.tolerance);
+    while let Some((from, to)) = lines.pop() {
+        let omega = 0.5 * (from.omega + to.omega);
+        let guess = tangent(balance, &from, omega);
+        let point =
+            Arc::new(balance.solve_beside(omega, ASIDE * omega * step.signum(), guess.as_ref())?);
+        found.push(Arc::clone(&point));
+        if point.status == PointStatus::NotComputed {
+            return Ok(found);
+        }
+        if point.is_solved() {
+            balance.scale.include(&point);
+        }
+        // The curvature tells what half the step would miss, a quarter of what is missed.
+        let missed = 4.0 * line_error(balance, [&from, &point, &to]).unwrap_or(0.0);
+        if missed > FARTHEST * balance.settings.tolerance
+            && (omega - from.omega).abs() > SHORTEST * omega
+        {
+            lines.push((Arc::clone(&point), to));
+            lines.push((from, point));
+        }
+    }
+    found.sort_by(|a, b| (a.omega * step.signum()).total_cmp(&(b.omega * step.signum())));
+    Ok(found)
 }
 
 /// Extrapolation along the tangent `dU/dω = J⁻¹ (dU^stuck/dω + dG/dω Q)`.
@@ -179,14 +218,10 @@ fn tangent(balance: &mut ForcedBalance<'_>, last: &Point, omega: f64) -> Option<
     Some(predicted)
 }
 
-/// Largest relative distance of the observed DOFs from a straight line between the last point
-/// and `new`, from the curvature through the last three points.
-fn line_error(balance: &ForcedBalance<'_>, points: &[Arc<Point>], new: &Point) -> Option<f64> {
-    let [.., before, last] = points else { return None };
-    let (before, last): (&Point, &Point) = (before, last);
-    if ![before, last, new].into_iter().all(Point::is_solved) {
-        return None;
-    }
-    let steps = [last.omega - before.omega, new.omega - last.omega];
-    Some(balance.scale.of_line([before, last, new], steps))
+/// Largest relative distance of the observed DOFs from a straight line between the last two of three points,
+/// from the curvature through all of them; none if one is not solved.
+fn line_error(balance: &ForcedBalance<'_>, points: [&Point; 3]) -> Option<f64> {
+    let [before, last, new] = points;
+    let steps = [last.omega - before.omega, new.omega - last.omega].map(f64::abs);
+    points.iter().all(|one| one.is_solved()).then(|| balance.scale.of_line(points, steps))
 }
