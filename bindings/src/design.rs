@@ -10,10 +10,11 @@ use numpy::{Complex64, PyArray2, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::sync::Arc;
-use stickslip_core::balance::{Cause, Linearised, Unknowns};
+use stickslip_core::balance::{Cause, Kept, Linearised, Progress, Unknowns};
 use stickslip_core::contact::Residual;
 use stickslip_core::design::{
-    self, bounded_peak_curve, optimum, peak_curve, Cell, CellPeak, Curve, Peak, PeakBounds, Target,
+    self, bounded_peak_curve, optimum, peak_curve, Cell, CellPeak, Curve, Optimum, Peak,
+    PeakBounds, Target,
 };
 use stickslip_core::fourier::{Harmonics, Measure, SampleTable};
 use stickslip_core::model::Variation;
@@ -48,6 +49,12 @@ fn target(settings: &Bound<'_, PyAny>, dof: usize) -> PyResult<Target> {
     Ok(Target { dof, measure, span: get(settings, "span")? })
 }
 
+/// What was found of a curve that could not be stopped; `None` is nothing.
+fn rest(found: &[Arc<Peak>], values: &[f64]) -> Option<Curve> {
+    let peaks: Vec<Peak> = found.iter().map(|peak| **peak).collect();
+    (!peaks.is_empty()).then(|| Curve::cut_short(peaks, values))
+}
+
 /// The peak at every value of a parameter. `bounds` asks for those over the residual tractions, and
 /// tells whether one vibration alone is known to exist.
 #[pyfunction]
@@ -64,13 +71,15 @@ pub fn damper_curve<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let (target, settings) = (target(settings, dof)?, harmonic(settings)?);
     let model = Arc::clone(&problem.model);
-    let curve = watch::computed(py, progress, move |look| match bounds {
-        None => peak_curve(&model, settings, &variation, &values, &target, look),
+    let asked = values.clone();
+    let follow = move |kept: &Kept<Peak>, look: &Progress<'_>| match bounds {
+        None => peak_curve(&model, settings, &variation, &values, &target, look, Some(kept)),
         Some(proved) => {
             let asked = (&values[..], proved);
-            bounded_peak_curve(&model, settings, &variation, asked, &target, look)
+            bounded_peak_curve(&model, settings, &variation, asked, &target, look, Some(kept))
         }
-    })?;
+    };
+    let curve = keeping(py, progress, follow, |found| rest(&found, &asked))?;
     written(py, &curve.peaks, &curve)
 }
 
@@ -87,9 +96,16 @@ pub fn optimal_damper<'py>(
 ) -> PyResult<[Bound<'py, PyAny>; 2]> {
     let (target, settings) = (target(settings, dof)?, harmonic(settings)?);
     let model = Arc::clone(&problem.model);
-    let found = watch::computed(py, progress, move |look| {
-        optimum(&model, settings, &variation, bounds, &target, look)
-    })?;
+    let found = keeping(
+        py,
+        progress,
+        move |kept, look| optimum(&model, settings, &variation, bounds, &target, look, Some(kept)),
+        |found| {
+            let mut curve = rest(&found, &[])?;
+            curve.peaks.sort_by(|a, b| a.value.total_cmp(&b.value));
+            Some(Optimum { minima: Vec::new(), curve })
+        },
+    )?;
     Ok([written(py, &found.minima, &found.curve)?, written(py, &found.curve.peaks, &found.curve)?])
 }
 

@@ -42,7 +42,8 @@ fn compare(system: &System, dof: usize, values: &[f64], highest: usize) {
     let target = Target { dof, measure: Measure::HalfRange, span: SPAN };
     let contacts: Vec<usize> = (0..system.dampers.len()).collect();
     let variation = slip_force(&contacts, ParameterMode::Value);
-    let curve = peak_curve(&model, fixed(highest), &variation, values, &target, &|_| true).unwrap();
+    let curve =
+        peak_curve(&model, fixed(highest), &variation, values, &target, &|_| true, None).unwrap();
     for peak in &curve.peaks {
         assert_eq!(peak.status, PointStatus::Converged);
         let mut member = system.clone();
@@ -75,7 +76,8 @@ fn a_curve_costs_less_than_ten_sweeps() {
         let values = geometric(1.0, 1e4, 60);
         let variation = slip_force(&[0], ParameterMode::Value);
         let curve =
-            peak_curve(&model, fixed(highest), &variation, &values, &target, &|_| true).unwrap();
+            peak_curve(&model, fixed(highest), &variation, &values, &target, &|_| true, None)
+                .unwrap();
         let balance = ForcedBalance::new(&model, fixed(highest), &[0, 1, 2]).unwrap();
         let sweep = sweep(balance, &omega).unwrap();
         println!(
@@ -107,7 +109,8 @@ fn slopes_of_the_curve_match_differences() {
     ];
     for (variation, value) in variations.iter().zip([80.0, 1.3, 3e6, 0.8]) {
         let values = [value * (1.0 - 1e-4), value, value * (1.0 + 1e-4)];
-        let curve = peak_curve(&model, fixed(7), variation, &values, &target, &|_| true).unwrap();
+        let curve =
+            peak_curve(&model, fixed(7), variation, &values, &target, &|_| true, None).unwrap();
         let [a, b, c] = [0, 1, 2].map(|i| curve.peaks[i]);
         let difference = (c.amplitude - a.amplitude) / (c.value - a.value);
         let scale = (b.amplitude / b.value).abs();
@@ -129,7 +132,7 @@ fn optima_of_the_beam() {
     {
         let target = Target { dof, measure: Measure::HalfRange, span: SPAN };
         let run = |variation: &Variation, bounds: (f64, f64)| {
-            optimum(&model, settings, variation, bounds, &target, &|_| true).unwrap()
+            optimum(&model, settings, variation, bounds, &target, &|_| true, None).unwrap()
         };
         let by_level = run(&Variation::Level, (0.5, 60.0));
         let by_force =
@@ -154,7 +157,8 @@ fn narrow_resonances_are_found_from_afar() {
     let target = Target { dof: 1, measure: Measure::HalfRange, span: SPAN };
     let values = [300.0, 3e3, 1e4, 1e6];
     let variation = slip_force(&[0], ParameterMode::Value);
-    let curve = peak_curve(&model, fixed(9), &variation, &values, &target, &|_| true).unwrap();
+    let curve =
+        peak_curve(&model, fixed(9), &variation, &values, &target, &|_| true, None).unwrap();
     assert!(curve.points < 40 * values.len(), "{}", curve.points);
     for peak in &curve.peaks {
         let mut member = system.clone();
@@ -177,9 +181,10 @@ fn an_optimum_is_that_of_a_fine_grid() {
         let contacts: Vec<usize> = (0..system.dampers.len()).collect();
         let variation = slip_force(&contacts, ParameterMode::Factor);
         let found =
-            optimum(&model, fixed(7), &variation, (0.05, 10.0), &target, &|_| true).unwrap();
+            optimum(&model, fixed(7), &variation, (0.05, 10.0), &target, &|_| true, None).unwrap();
         let grid = geometric(0.05, 10.0, 400);
-        let curve = peak_curve(&model, fixed(7), &variation, &grid, &target, &|_| true).unwrap();
+        let curve =
+            peak_curve(&model, fixed(7), &variation, &grid, &target, &|_| true, None).unwrap();
         let least = curve.peaks.iter().min_by(|a, b| a.amplitude.total_cmp(&b.amplitude)).unwrap();
         let best = found.minima[0];
         assert!(best.amplitude <= least.amplitude * (1.0 + 1e-9));
@@ -198,7 +203,8 @@ fn an_ended_analysis_keeps_what_it_has() {
     };
     let values = geometric(1.0, 1e4, 60);
     let variation = slip_force(&[0], ParameterMode::Value);
-    let curve = peak_curve(&model, fixed(7), &variation, &values, &target, &progress).unwrap();
+    let curve =
+        peak_curve(&model, fixed(7), &variation, &values, &target, &progress, None).unwrap();
     let done = curve.peaks.iter().filter(|p| p.status == PointStatus::Converged).count();
     assert!(curve.interrupted && done > 0 && done < values.len(), "{done}");
     assert_eq!(curve.peaks.len(), values.len());

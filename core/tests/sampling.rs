@@ -265,7 +265,9 @@ fn ranges_and_summits_choose_samples_too() {
     let target = Target { dof: 1, measure: Measure::HalfRange, span: (150.0, 250.0) };
     let curve = |settings: Settings| {
         let levels = [0.6, 1.0, 1.4];
-        peak_curve(&model, settings, &Variation::Level, &levels, &target, &|_| true).unwrap().peaks
+        peak_curve(&model, settings, &Variation::Level, &levels, &target, &|_| true, None)
+            .unwrap()
+            .peaks
     };
     for (own, exact) in curve(settings).iter().zip(&curve(Settings::default())) {
         assert_eq!(own.status, PointStatus::Converged);

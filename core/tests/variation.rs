@@ -79,7 +79,7 @@ fn what_a_model_does_not_have_is_refused() {
 fn every_analysis_refuses_what_it_does_not_vary() {
     let target = Target { dof: 0, measure: Measure::HalfRange, span: (0.5, 2.0) };
     let settings = Settings::default();
-    let curve = peak_curve(&model(), settings, &Variation::Ratio, &[1.0], &target, &|_| true);
+    let curve = peak_curve(&model(), settings, &Variation::Ratio, &[1.0], &target, &|_| true, None);
     assert!(curve.unwrap_err().to_string().contains("limit cycles"));
     let negative = NegativeDamping::Whole(mat![[-1.0, 0.0], [0.0, -1.0]]);
     let model = model();

@@ -3,11 +3,14 @@
 use super::bounds::{bound_peak, PeakBounds};
 use super::member::Member;
 use super::peak::{PeakQuery, PeakSearch, Reached, OF_CURVE};
-use crate::balance::{ForcedBalance, Linearised, PointStatus, Progress, Resolution, Settings};
+use crate::balance::{
+    keep, ForcedBalance, Kept, Linearised, PointStatus, Progress, Resolution, Settings,
+};
 use crate::fourier::Measure;
 use crate::model::{Model, Variation};
 use crate::timing::Profile;
 use crate::Error;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// What peak is followed.
@@ -82,7 +85,18 @@ pub struct Curve {
     pub profile: Profile,
 }
 
-/// Finds the peak at every value of the parameter, in the order given.
+impl Curve {
+    /// What was kept of a curve over `values` that was left to itself.
+    #[must_use]
+    pub fn cut_short(mut peaks: Vec<Peak>, values: &[f64]) -> Self {
+        let rest = values.iter().skip(peaks.len());
+        peaks.extend(rest.map(|&value| Peak::missing(value, PointStatus::NotComputed)));
+        Self { peaks, points: 0, interrupted: true, profile: Profile::default() }
+    }
+}
+
+/// Finds the peak at every value of the parameter, in the order given; `kept` takes them as they are
+/// found.
 ///
 /// # Errors
 /// A range that is not ordered, a value that a law refuses, or as for a solution.
@@ -93,8 +107,9 @@ pub fn peak_curve(
     values: &[f64],
     target: &Target,
     progress: &Progress<'_>,
+    kept: Option<&Kept<Peak>>,
 ) -> Result<Curve, Error> {
-    followed(model, settings, variation, (values, None), target, progress)
+    followed(model, settings, variation, (values, None), target, (progress, kept))
 }
 
 /// [`peak_curve`] with bounds over the residual tractions; `proved` tells that theory leaves one
@@ -109,8 +124,9 @@ pub fn bounded_peak_curve(
     (values, proved): (&[f64], bool),
     target: &Target,
     progress: &Progress<'_>,
+    kept: Option<&Kept<Peak>>,
 ) -> Result<Curve, Error> {
-    followed(model, settings, variation, (values, Some(proved)), target, progress)
+    followed(model, settings, variation, (values, Some(proved)), target, (progress, kept))
 }
 
 fn followed(
@@ -119,12 +135,12 @@ fn followed(
     variation: &Variation,
     (values, bounds): (&[f64], Option<bool>),
     target: &Target,
-    progress: &Progress<'_>,
+    (progress, kept): (&Progress<'_>, Option<&Kept<Peak>>),
 ) -> Result<Curve, Error> {
     let start = Instant::now();
     let quest = target.quest();
     let mut follower = Follower::new(model, settings, variation, &quest, progress)?;
-    follower.bounds = bounds;
+    (follower.bounds, follower.kept) = (bounds, kept);
     let mut peaks = Vec::with_capacity(values.len());
     for (index, &value) in values.iter().enumerate() {
         peaks.push(follower.peak(value, index as f64 / values.len() as f64)?);
@@ -141,6 +157,8 @@ pub(super) struct Follower<'a> {
     resolution: Option<Resolution>,
     /// Whether bounds over the residual tractions are asked for, and theory says that they coincide.
     bounds: Option<bool>,
+    /// Where peaks are put as they are found.
+    pub(super) kept: Option<&'a Kept<Peak>>,
     /// Values without a solved peak.
     pub(super) missing: Vec<Peak>,
     pub(super) interrupted: bool,
@@ -156,8 +174,8 @@ impl<'a> Follower<'a> {
     ) -> Result<Self, Error> {
         let climb = PeakSearch::new(model, settings, quest, OF_CURVE, progress)?;
         let missing = Vec::new();
-        let (resolution, bounds) = (None, None);
-        Ok(Self { model, variation, climb, resolution, bounds, missing, interrupted: false })
+        let (resolution, bounds, kept) = (None, None, None);
+        Ok(Self { model, variation, climb, resolution, bounds, kept, missing, interrupted: false })
     }
 
     pub(super) fn finish(self, peaks: Vec<Peak>, start: Instant) -> Curve {
@@ -174,8 +192,16 @@ impl<'a> Follower<'a> {
         self.climb.seeds.clear();
     }
 
-    /// The peak at one value of the parameter.
+    /// The peak at one value of the parameter, which is kept.
     pub(super) fn peak(&mut self, value: f64, share: f64) -> Result<Peak, Error> {
+        let peak = self.found(value, share)?;
+        if peak.status != PointStatus::NotComputed {
+            keep(self.kept, &Arc::new(peak));
+        }
+        Ok(peak)
+    }
+
+    fn found(&mut self, value: f64, share: f64) -> Result<Peak, Error> {
         self.interrupted = self.interrupted || !(self.climb.progress)(share);
         if self.interrupted {
             return Ok(Peak::missing(value, PointStatus::NotComputed));

@@ -6,7 +6,7 @@
 
 use super::curve::{Curve, Follower, Peak, Target};
 use super::member::objective;
-use crate::balance::{PointStatus, Progress, Settings};
+use crate::balance::{Kept, PointStatus, Progress, Settings};
 use crate::model::{Model, Variation};
 use crate::Error;
 use std::time::Instant;
@@ -47,7 +47,7 @@ struct Trial {
 
 /// Finds every local minimum of the peak over `bounds` that a curve of logarithmically spaced
 /// values shows, refined to a relative gain of 1e-8. With automatic harmonics minima count as one
-/// if the rise between them is below twice the tolerance.
+/// if the rise between them is below twice the tolerance. `kept` takes the peaks as they are found.
 ///
 /// # Errors
 /// Bounds that are not positive and ordered, or as for the curve.
@@ -58,6 +58,7 @@ pub fn optimum(
     (low, high): (f64, f64),
     target: &Target,
     progress: &Progress<'_>,
+    kept: Option<&Kept<Peak>>,
 ) -> Result<Optimum, Error> {
     let start = Instant::now();
     if !(low > 0.0 && low < high && high.is_finite()) {
@@ -65,6 +66,7 @@ pub fn optimum(
     }
     let quest = target.quest();
     let mut follower = Follower::new(model, settings, variation, &quest, progress)?;
+    follower.kept = kept;
     let mut trials = Vec::new();
     for i in 0..COARSE {
         let share = i as f64 / (COARSE - 1) as f64;
