@@ -127,3 +127,18 @@ def test_deviations_of_frequencies_become_those_of_the_stiffness():
 def test_other_deviations_of_frequencies_are_refused(deviations, said):
     with pytest.raises(ss.ModelError, match=said):
         ss.frequency_pattern(deviations)
+
+
+def test_deviations_may_be_texts_with_a_unit_as_in_study_files():
+    disk = ss.reference.beam_ring(sectors=3)
+    given = ["1 %", 0.02, "-3 %"]
+    for keyword in ("pattern", "mass"):
+        said, plain = (
+            disk.mistuned(**{keyword: values}) for values in (given, [0.01, 0.02, -0.03])
+        )
+        assert (said.structure.stiffness == plain.structure.stiffness).all()
+        assert (said.structure.mass == plain.structure.mass).all()
+    assert (disk.mistuned("1 %").structure.mass == disk.mistuned(0.01).structure.mass).all()
+    assert (ss.frequency_pattern(given) == ss.frequency_pattern([0.01, 0.02, -0.03])).all()
+    with pytest.raises(ss.ModelError, match=r"pattern\[1\] = '2 N' is not a ratio"):
+        disk.mistuned(["1 %", "2 N", 0.0])

@@ -20,6 +20,7 @@ from stickslip.model.damping import ModalDamping, Rayleigh, makes_blocks
 from stickslip.model.force import Force
 from stickslip.model.model import Model, from_core
 from stickslip.model.structure import DampingLaw, Structure
+from stickslip.units import without_units
 
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
@@ -246,8 +247,10 @@ def _deviations(values: ArrayLike | None, entry: str, sectors: int) -> NDArray[n
     if values is None:
         return np.zeros(sectors)
     try:
-        given = np.asarray(values)
-    except ValueError:
+        given = np.asarray(without_units(values, "", entry))
+    except ValueError as error:
+        if isinstance(error, ModelError):
+            raise
         raise ModelError(f"{entry}: a ragged list; give {sectors} deviations") from None
     if given.dtype.kind not in "fiu":
         raise ModelError(f"{entry}: {brief(values)} holds no real numbers; give ratios")

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip.checks import choice, real_array, whole_number
 from stickslip.errors import ModelError
-from stickslip.units import physical_number
+from stickslip.units import physical_number, without_units
 
 Distribution: TypeAlias = Literal["normal", "uniform"]
 DISTRIBUTIONS: tuple[str, ...] = get_args(Distribution)
@@ -57,7 +57,7 @@ def frequency_pattern(deviations: ArrayLike) -> NDArray[np.float64]:
     Parameters
     ----------
     deviations : array_like of float
-        Relative deviations of the frequencies of blades, 0.02 for 2 %: of any shape, one disk
+        Relative deviations of the frequencies of blades, 0.02 or "2 %": of any shape, one disk
         (sectors,), or many (patterns, sectors).
 
     Returns
@@ -75,7 +75,8 @@ def frequency_pattern(deviations: ArrayLike) -> NDArray[np.float64]:
 
 def stiffness_of(deviations: ArrayLike, entry: str) -> NDArray[np.float64]:
     """Return the deviations of the stiffness that belong to those of frequencies."""
-    relative = real_array(deviations, entry, "(f - f0) / f0, 0.02 for 2 %")
+    given = without_units(deviations, "", entry)
+    relative = real_array(given, entry, "(f - f0) / f0, 0.02 for 2 %")
     wrong = np.argwhere(~(np.abs(relative) < 1.0))
     if wrong.size:
         place = "".join(f"[{one}]" for one in wrong[0])
