@@ -131,8 +131,8 @@ class BladedDisk(Sector):
         ----------
         pattern : array_like, shape (n,), or float, optional
             Deviations of stiffness, 0.02 or "2 %": that of sector i is (1 + pattern[i]) times that
-            of the structure. Couplings and interface do not deviate. A damping law makes the damping anew,
-            a damping matrix stays. 0 is the tuned assembly.
+            of the structure. Couplings and interface do not deviate. A damping law makes the
+            damping anew, a damping matrix stays. 0 is the tuned assembly.
         mass : array_like, shape (n,), or float, optional
             Deviations of mass, likewise.
         structures : iterable of Structure, optional
