@@ -14,6 +14,7 @@ DOUBTS = {
     "phase-unit",
     "mistuning-unit",
     "friction-unit",
+    "angle-unit",
     "two-frequencies",
 }
 
@@ -228,6 +229,44 @@ def test_percents_taken_for_a_coefficient_of_friction_are_a_caution(name):
     )
     for friction in (0.3, 1.5, 1e6):
         assert not doubts(ANALYSES[name](model(contacts=[pressed(friction)])))
+
+
+def test_statics_ask_for_what_concerns_them_alone():
+    at_rest = ss.static_response(model(damping=ss.ModalDamping(2.0), contacts=[pressed(30.0)]))
+    assert list(doubts(at_rest)) == ["friction-unit"]
+
+
+def between(kind, angle, **parts):
+    """Two blades with a damper of some angle between them."""
+    damper = kind(
+        angle=angle,
+        mass=0.1,
+        friction=0.5,
+        tangential_stiffness=3e5,
+        normal_stiffness=3e5,
+        load=120.0,
+        **parts,
+    )
+    blade = ss.Structure(np.eye(2), np.diag([4e4, 9e4]), np.diag([4.0, 6.0]), ["x", "y"])
+    ends = {"left_dofs": ["x", "y"], "right_dofs": ["x", "y"]}
+    return damper.between(blade, blade, **ends, forces=[ss.Force("left.x", 1.0)])
+
+
+@pytest.mark.parametrize("kind", [ss.WedgeDamper, ss.SplitDamper])
+def test_radians_taken_for_degrees_are_a_caution(kind):
+    def found(angle):
+        return doubts(ss.forced_response(between(kind, angle), [150.0], harmonics=1))
+
+    text = "The face {!r} of a damper is inclined by {} deg; for {} rad write '{} rad'."
+    assert found(0.6)["angle-unit"].text == text.format("left", *3 * ["0.6"])
+    assert found((30.0, 1.2))["angle-unit"].text == text.format("right", *3 * ["1.2"])
+    for angle in (0.0, 2.0, 34.0, "0.6 rad"):
+        assert not found(angle)
+
+
+def test_radians_of_a_cylinder_are_a_caution_of_its_statics():
+    cylinder = between(ss.CylinderDamper, 0.6, cylinder_radius=0.01)
+    assert list(doubts(ss.static_response(cylinder))) == ["angle-unit"]
 
 
 @pytest.mark.parametrize("analysis", [ss.forced_response, ss.single_harmonic, ss.exact_response])

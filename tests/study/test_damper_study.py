@@ -90,6 +90,7 @@ def test_two_dampers_have_names_of_their_own():
     [
         ('kind = "wedge"', 'kind = "wegde"', "damper 1: .*did you mean 'wedge'"),
         ('"40 deg"', '"140 deg"', "damper 1: WedgeDamper: angle 140"),
+        ('"40 deg"', "40", "angle 2291.83 deg; .* as '30 deg': a number alone is in rad"),
         ('right_dofs = ["x", "y"]', 'right_dofs = ["x", "z"]', "right_dofs: unknown dof 'z'"),
         ("mass = 0.05\n", "", "damper 1: 'mass' is missing"),
         ('radius = "0.4 m"', 'radius = "0.4 N"', "damper 1"),

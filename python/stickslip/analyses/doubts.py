@@ -6,6 +6,7 @@ import numpy as np
 
 from stickslip.analyses.texts import told
 from stickslip.analyses.uniqueness import instability, uniqueness
+from stickslip.damper.damper import LEFT, RIGHT
 from stickslip.disk.mistuned import MistunedDisk
 from stickslip.model import Coulomb, Model
 from stickslip.model.structure import ModalDamping
@@ -15,6 +16,8 @@ _ROUND, _DEGREES = 15.0, 5.0
 """Phases from the first on that are multiples of the second are taken for degrees."""
 _FRICTION = 3.0, 100.0
 """Coefficients between these look like percents; larger ones are those of contacts that stick."""
+_FLAT = 0.01, 0.5 * np.pi
+"""Degrees between these are taken for radians: so flat a damper is none of friction."""
 _PERCENTS = 0.5
 """Deviations of blades from here on are taken for percents: those of one disk are smaller."""
 
@@ -26,8 +29,12 @@ def doubts(model: Model) -> tuple[Diagnostic | None, ...]:
 
 def structure_doubts(model: Model) -> tuple[Diagnostic | None, ...]:
     """Say what of a structure, its contacts and forces looks like a slip of sign or unit."""
-    found = (_overdamped(model), _degrees(model), _mistuning(model), _friction(model))
-    return instability(model), *found
+    return *static_doubts(model), _overdamped(model), _degrees(model)
+
+
+def static_doubts(model: Model) -> tuple[Diagnostic | None, ...]:
+    """Say what of it puts a state of rest in doubt: all but damping and phases."""
+    return instability(model), _mistuning(model), _friction(model), _flat_faces(model)
 
 
 def _degrees(model: Model) -> Diagnostic | None:
@@ -79,4 +86,19 @@ def _friction(model: Model) -> Diagnostic | None:
         friction = float(np.max(contact.friction)) if isinstance(contact, Coulomb) else 0.0
         if least <= friction <= most:
             return told("friction-unit", contact=name, friction=friction, _percent=0.01 * friction)
+    return None
+
+
+def _flat_faces(model: Model) -> Diagnostic | None:
+    """Say that a face of a damper lies nearly across its load, as with an angle in radians."""
+    least, most = _FLAT
+    for name, contact in zip(model.contact_names, model.contacts, strict=True):
+        if name.rpartition(".")[2] not in (LEFT, RIGHT) or not isinstance(contact, Coulomb):
+            continue
+        normals = np.atleast_2d(np.array(contact.normal or ()))
+        if normals.shape[1] != 2:
+            continue
+        angle = float(np.degrees(np.arctan2(*np.abs(normals[0]))))
+        if least < angle < most:
+            return told("angle-unit", contact=name, angle=angle)
     return None

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 from stickslip import _core
 from stickslip.analyses.arguments import observed_dofs
+from stickslip.analyses.doubts import static_doubts
 from stickslip.analyses.run import Progress, Run, refusals
-from stickslip.analyses.uniqueness import instability
 from stickslip.model import Model
 from stickslip.results.diagnostic import present
 from stickslip.results.static_response import StaticArrays, StaticResponse
@@ -58,7 +58,7 @@ def static_response(
             interrupted=False,
             timings={},
             counters={"steps": found.steps},
-            diagnostics=present((instability(model),)),
+            diagnostics=present(static_doubts(model)),
         )
         result = replace(result, interrupted=result.status == RestStatus.NOT_COMPUTED)
         return run.ended(result, f"{result.share:.3g} of the loads")

@@ -120,6 +120,8 @@ TEXTS = {
     "{deviation:g} % give {_percent:g}.",
     "friction-unit": "The coefficient of friction of {contact!r} is {friction:g}; for "
     "{friction:g} % give {_percent:g}.",
+    "angle-unit": "The face {contact!r} of a damper is inclined by {angle:.6g} deg; for "
+    "{angle:.6g} rad write '{angle:.6g} rad'.",
     "two-frequencies": "omega = [{low:g}, {high:g}] are two frequencies, and nothing between them "
     "was computed; a range is omega = ({low:g}, {high:g}), in study files "
     "{{ from = {low:g}, to = {high:g} }}.",

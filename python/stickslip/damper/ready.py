@@ -349,9 +349,11 @@ def _inertia(value: float | None, entry: str) -> float | None:
 
 def _require_angle(angle: float, entry: str) -> None:
     if not 0.0 <= angle < 90.0:
+        between = "from 0 to below 90, between the normal of a face and the load"
         raise ModelError(
-            f"{entry} {angle:g}; give degrees from 0 to below 90, between the normal of a face and "
-            "the load"
+            f"{entry} {angle:g}; give degrees {between}",
+            study=f"{entry} {angle:g} deg; give degrees {between}, as '30 deg': a number alone is "
+            "in rad",
         )
 
 
