@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
+from stickslip.analyses.assumptions import _two_frequencies
 from stickslip.results.diagnostic import Severity
 
 MASS = np.diag([1.0, 0.5])
@@ -283,3 +284,10 @@ def test_two_frequencies_that_look_like_a_range_are_a_caution(analysis):
 
 def test_a_range_is_none_of_two_frequencies():
     assert not doubts(ss.forced_response(model(), (120.0, 300.0), harmonics=1))
+
+
+def test_two_frequencies_that_a_run_came_to_are_none_of_a_range():
+    """Of a longer list that Ctrl-C has ended."""
+    arrays = ss.forced_response(model(), [100.0, 200.0], harmonics=1).arrays
+    assert _two_frequencies(arrays, 2) is not None
+    assert _two_frequencies(arrays, 3) is None

@@ -68,7 +68,7 @@ def balance_assumptions(
                     points=orbits,
                     _take="point takes its" if orbits == 1 else "points take their",
                 ),
-                settings.span is None and _two_frequencies(arrays),
+                settings.span is None and _two_frequencies(arrays, asked),
                 _observed(model, dofs),
                 *doubts(model),
                 _truncation(dofs, arrays, single=single),
@@ -101,7 +101,7 @@ def orbit_assumptions(
                 settings.span is not None
                 and told("frequencies/balance", tolerance=settings.tolerance, _low=low, _high=high),
                 _frequencies(None, settings.tolerance, arrays, solution, asked),
-                settings.span is None and _two_frequencies(arrays),
+                settings.span is None and _two_frequencies(arrays, asked),
                 _observed(model, dofs),
                 *doubts(model),
                 missed_tolerances(arrays.status, "points"),
@@ -301,9 +301,9 @@ def turn_per_step(model: Model, settings: TransientSettings) -> float:
     return step * float(natural_frequencies(model)[-1])
 
 
-def _two_frequencies(arrays: Arrays) -> Diagnostic | None:
+def _two_frequencies(arrays: Arrays, asked: int | None) -> Diagnostic | None:
     """Say that what looks like the ends of a range was not taken for one."""
-    if arrays.omega.size != 2:
+    if asked != 2 or arrays.omega.size != 2:
         return None
     low, high = sorted(arrays.omega.tolist())
     return told("two-frequencies", low=low, high=high) if high > _APART * low else None
