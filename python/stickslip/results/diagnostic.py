@@ -40,7 +40,8 @@ _CODES = {
         negative-stiffness overdamped phase-unit mistuning-unit friction-unit angle-unit
         two-frequencies no-tolerance forces-left-out peak-at-edge optimum-at-bound points-limit
         no-turn branch-jumps stability-unknown jump further-branches free-flight
-        internal-resonance not-determined tied at-bound other-minimum misfit-above-noise cycles-differ values-missed rigid-contacts
+        internal-resonance not-determined tied at-bound other-minimum misfit-above-noise
+        cycles-differ values-missed rigid-contacts
     """,
     Severity.FAILURE: """
         mode-not-reached branch-stalled branch-turned-back branch-end no-limit predictions-missing
