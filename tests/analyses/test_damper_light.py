@@ -128,14 +128,33 @@ def test_wording_of_one_and_of_several() -> None:
     assert "1 local minimum)" in repr(best)
 
 
-def test_default_bounds_hold_the_optimum_of_a_load_that_hardly_reaches_the_damper():
+def weakly_coupled():
     """Weak springs pass little of the load on away from resonance, at which all of it arrives."""
     springs = 1e4 * np.diag([1.0077, 1.0139, 1.0136, 1.0157, 1.0074])
     springs -= 67.8 * (np.eye(5, k=1) + np.eye(5, k=-1))
     structure = ss.Structure(np.eye(5), springs, ss.ModalDamping(1e-5), list("abcde"))
     damper = ss.Jenkins("a", stiffness=7.5e4, slip_force=1.0)
-    model = ss.Model(structure, [damper], [ss.Force("e", 1.0)])
+    return ss.Model(structure, [damper], [ss.Force("e", 1.0)])
+
+
+def test_default_bounds_hold_the_optimum_of_a_load_that_hardly_reaches_the_damper():
+    model = weakly_coupled()
     found = ss.optimal_damper(model, dof="b", harmonics=1)
     assert not found.at_bound
     curve = ss.damper_curve(model, slip_force=np.geomspace(1e-4, 100.0, 25), dof="b", harmonics=1)
     assert found.amplitude <= np.nanmin(curve.amplitude) * (1.0 + 1e-6)
+
+
+def test_ctrl_c_in_the_search_between_wider_bounds_keeps_the_curve_before():
+    shares = [0.0]
+
+    def press(share):
+        if share < shares[-1]:
+            raise KeyboardInterrupt
+        shares.append(share)
+
+    with pytest.raises(ss.Interrupted, match="interrupted after") as stop:
+        ss.optimal_damper(weakly_coupled(), dof="b", harmonics=15, progress=press)
+    curve = stop.value.result
+    assert curve.interrupted
+    assert curve.values.size >= 40

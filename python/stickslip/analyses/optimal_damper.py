@@ -19,7 +19,7 @@ from stickslip.interruption import stopped
 from stickslip.model import Model
 from stickslip.model.contact import Contact
 from stickslip.results.arrays import amplitude_of
-from stickslip.results.damper_curve import DamperArrays, LeastPeak
+from stickslip.results.damper_curve import DamperArrays, DamperCurve, LeastPeak
 from stickslip.results.diagnostic import Diagnostic, present
 from stickslip.results.optimal_damper import OptimalDamper
 from stickslip.settings.peaks import DamperSettings, OptimumKeys
@@ -78,8 +78,27 @@ def optimal_damper(
         result = _least(model, variation, kept, spans[0], run)
         # The scale of the load is too small where the structure hardly passes it on to contacts.
         if result.at_bound and spans[1:]:
-            result = _least(model, variation, kept, spans[1], run)
+            result = _farther(result.curve, model, variation, kept, spans[1], run)
         return run.completed(result, "optimal damper")
+
+
+def _farther(
+    known: DamperCurve,
+    model: Model,
+    variation: Variation,
+    settings: DamperSettings,
+    bounds: tuple[float, float],
+    run: Run,
+) -> OptimalDamper:
+    """Return the least peak between wider bounds; stopped early, the curve that has more values."""
+    try:
+        return _least(model, variation, settings, bounds, run)
+    except KeyboardInterrupt as stop:
+        wider = getattr(stop, "result", None)
+        if isinstance(wider, DamperCurve) and wider.values.size >= known.values.size:
+            raise
+        curve = replace(known, interrupted=True)
+        raise stopped("optimal damper", f"{known.values.size} peaks", curve) from None
 
 
 def _least(
