@@ -94,6 +94,7 @@ def test_included_files(tmp_path):
         (CHEXA, "CHEXA,10,1,11,12,13,14,15,16\n,17,19", "element 10: there is no node 19"),
         (CHEXA, "CHEXA,10,1,11,12,13,14,15,16\n,17,17", "element 10: corners coincide"),
         (CHEXA, "CTETRA,10,1,11,12,13,15,16,17\n,18,14,21,22,23,24,25", "CTETRA 10 has more than"),
+        (CHEXA, CHEXA.partition("\n")[2], "GRID 18 goes on over a second line; a card is missing"),
         ("ENDDATA", "CTETRA,5,1,21,22,23,25,11\nENDDATA", "5, at the outside, has some midside"),
     ],
 )
@@ -138,3 +139,9 @@ def test_nodes_between_corners_are_those_of_the_same_element_of_ansys(tmp_path, 
     mesh = read(tmp_path, "\n".join([*lines, *map(",".join, rows), ""]))
     assert [kind for kind, _ in mesh.cells] == [kind for kind, _ in other.cells]
     np.testing.assert_array_equal(mesh.cells[0][1], other.cells[0][1])
+
+
+def test_a_node_that_a_set_names_twice_is_one(tmp_path):
+    sets = read(tmp_path, SOUND).node_sets
+    twice = read(tmp_path, SOUND.replace("SET1,1,", "SET1,1,16,15,")).node_sets
+    assert sorted(twice["SET1 1"]) == sorted(sets["SET1 1"])

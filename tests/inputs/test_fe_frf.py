@@ -127,3 +127,19 @@ def test_a_table_is_sent_to_what_reads_it(tmp_path):
     frequency, amplitude = ss.read_curve(path)
     assert frequency.tolist() == [20.5, 21.0]
     assert amplitude.tolist() == [0.0012, 0.0015]
+
+
+@pytest.mark.parametrize(("old", "new"), [("    -1\n", "    -1   \n"), ("\n    58", "\n     58")])
+def test_functions_that_pyuff_passes_over_are_missed(tmp_path, old, new):
+    """Blanks beside one of the delimiters, or before the number of a dataset."""
+    path = tmp_path / "two.uff"
+    ss.write_frf(path, 2 * [ss.Frf([1.0, 2.0], [1.0, 2.0], "1.1", "1.2")])
+    content = path.read_text()
+    assert len(ss.read_frf(path)) == 2
+    head, found, rest = content.rpartition(old)
+    assert found
+    path.write_text(head + new + rest)
+    with pytest.raises(ModelError, match="of 2 datasets 58 1 can be found: blanks beside"):
+        ss.read_frf(path)
+    path.write_text("".join(f"{line:80}\n" for line in content.splitlines()))
+    assert len(ss.read_frf(path)) == 2

@@ -30,6 +30,8 @@ _SHELLS: dict[str, tuple[str, int, list[int]]] = {
 _KINDS = _SOLIDS | _SHELLS
 _MOST = 6
 """Fields of a grid point that are read; blank ones at the end need not be written."""
+_ONE_LINE = 8
+"""Fields of a grid point, which no second line continues."""
 _OTHER_WORDS = {"SKIN", "EXCEPT", "BY"}
 """Words of sets that no THRU stands for."""
 
@@ -71,6 +73,8 @@ class _Bulk:
 
     def _grid(self, fields: list[str]) -> None:
         number, (_, *words) = whole_field(fields[0]), [*fields, *[""] * _MOST]
+        if any(fields[_ONE_LINE:]):
+            raise ValueError(f"GRID {number} goes on over a second line; a card is missing")
         place = tuple(real_field(one) if one else 0.0 for one in words[1:4])
         systems = words[0], words[4]
         if self.places.get(number, place) != place or self.systems.get(number, systems) != systems:
@@ -118,7 +122,7 @@ class _Bulk:
         place = made.position
         # A range may name more numbers than memory holds; one longer than the nodes has others.
         return {
-            name: [place[one] for part in own for one in part]
+            name: list(dict.fromkeys(place[one] for part in own for one in part))
             for name, own in self.sets.items()
             if own
             and name not in self.unread

@@ -187,9 +187,14 @@ def read_frf(path: str | os.PathLike[str]) -> tuple[Frf, ...]:
     file = file_path(path, "path")
     with readable(file, "Universal File"):
         pyuff = optional_package("pyuff", f"{file}: Universal Files")
-        _require_datasets(file)
+        present = _require_datasets(file)
         universal = pyuff.UFF(str(file))
         kinds = np.atleast_1d(universal.get_set_types())
+        if np.count_nonzero(kinds == 58) != present:
+            raise ValueError(
+                f"of {present} datasets 58 {np.count_nonzero(kinds == 58)} can be found: blanks "
+                "beside their -1 or 58"
+            )
         sets = [universal.read_sets(int(at)) for at in np.flatnonzero(kinds == 58)]
         for at in np.flatnonzero(kinds == _UNITS):
             _require_si(universal.read_sets(int(at)))
@@ -291,9 +296,12 @@ def _dataset(pyuff: ModuleType, frf: Frf) -> object:
     )
 
 
-def _require_datasets(file: Path) -> None:
-    """Refuse what pyuff passes over: a lost delimiter, and characters that are no numbers."""
-    kind, number, ended = b"", 0, False
+def _require_datasets(file: Path) -> int:
+    """Refuse what pyuff passes over: a lost delimiter, and characters that are no numbers.
+
+    Return how many functions there are, of which it passes over some as well.
+    """
+    kind, number, ended, functions = b"", 0, False, 0
     for line in file.read_bytes().splitlines():
         if line.rstrip().endswith(_END):
             ended, number = number > 0, 0 if number else 1
@@ -302,6 +310,7 @@ def _require_datasets(file: Path) -> None:
             number += 1
             if not kind[:6].strip().isdigit():
                 raise ModelError(f"{file}: a dataset without its number; the file is damaged")
+            functions += number == 2 and kind.split()[0].rstrip(b"b") == b"58"
             if number > _HEAD and kind == _TEXT and not _NUMBERS.fullmatch(line):
                 shown = brief(line.decode("latin-1").strip())
                 raise ModelError(f"{file}: {shown} holds no numbers; the file is damaged")
@@ -313,3 +322,4 @@ def _require_datasets(file: Path) -> None:
             raise ModelError(f"{file}: a line stands outside the datasets; the file is damaged")
     if number or not ended:
         raise ModelError(f"{file}: the last dataset does not end; the file was cut short")
+    return functions
