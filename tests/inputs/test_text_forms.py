@@ -80,7 +80,9 @@ def test_a_matrix_in_rows_of_text(tmp_path, text):
         ("1,2\n3,4,5\n", "line 2: 3 numbers; give"),
         ("1,2\n3,\n4,5\n", "line 2: 1 number; give"),
         ("1;2\n3;4 N/m\n", "line 2: '4 N/m' is no"),
-        (",x,y\nx,1,2\ny,2,4\n", "no line with a row of numbers"),
+        (",x,y\nx,1,2\ny,2,4\n", "line 2: 'x' is no"),
+        ("1;2 N\n3;4\n", "line 1: '2 N' is no"),
+        ("1;2;3x4;5\n3;4\n", "line 1: '3x4' is no"),
         ("1,nan\nnan,4\n", "finite"),
     ],
 )

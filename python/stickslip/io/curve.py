@@ -71,7 +71,7 @@ def _rows(file: Path, columns: int | None) -> list[list[float]]:
                 raise ValueError("an empty field")
             rows.append([_number(field) for field in fields[:size]])
         except ValueError as error:
-            if rows or not _is_heading(line, size):
+            if rows or not _is_heading(line, columns):
                 raise ModelError(
                     f"{file}: line {number}: {error}; give {wanted} per line"
                 ) from None
@@ -94,15 +94,23 @@ def _fields(line: str) -> list[str]:
     return [field.strip() for field in fields]
 
 
-def _is_heading(line: str, columns: int) -> bool:
-    """Return whether a line before the first number begins with something else than numbers."""
-    words = re.split(r"[,;\s]+", line.strip(_ENDS))[:columns]
+def _is_heading(line: str, columns: int | None) -> bool:
+    """Return whether a line before the first number begins with something else than numbers.
+
+    That of a table, of which no row may be lost, has no number at all.
+    """
+    if columns is None:
+        return not any(map(_is_number, _fields(line.strip())))
+    words = re.split(r"[,;\s]+", line.strip(_ENDS))
+    return len(words) < columns or not all(map(_is_number, words[:columns]))
+
+
+def _is_number(word: str) -> bool:
     try:
-        for word in words:
-            real_field(word)
+        real_field(word)
     except ValueError:
-        return True
-    return len(words) < columns
+        return False
+    return True
 
 
 def _number(field: str) -> float:
