@@ -250,3 +250,11 @@ def test_shapes_are_drawn_of_few_degrees_of_freedom(count, insets):
     modes = ss.nonlinear_modes(model, amplitude=[1e-3], harmonics=1)
     ax = modes.plot(damping=False)
     assert sum(one.get_title() == "shape" for one in ax.child_axes) == insets
+
+
+def test_many_amplitudes_are_no_hard_place() -> None:
+    """Each takes some evaluations of its own, which count for no step of the branch."""
+    wanted = np.geomspace(1e-6, 1e-2, 1500)
+    modes = ss.nonlinear_modes(ss.reference.snecma_beam(), amplitude=wanted, harmonics=1)
+    assert (modes.arrays.status == 0).all()
+    assert not [one for one in modes.diagnostics if one.severity != "note"]

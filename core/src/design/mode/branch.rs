@@ -36,7 +36,8 @@ const HALVINGS: usize = 20;
 const SHORTER: f64 = 0.25;
 /// Amplitudes below the least one by this factor at which a branch that has turned back ends.
 const BACK: f64 = 10.0;
-/// Most evaluations of the equations: so many per step, and so many more for a few hard places.
+/// Most evaluations of the equations: so many per step and per amplitude that is taken on the way, and so many
+/// more for a few hard places.
 const EVALUATIONS: [usize; 2] = [40, 1500];
 
 /// A branch on its way.
@@ -164,7 +165,7 @@ impl<'a> Walk<'a> {
                 return ModeEnd::Returned;
             }
             let evaluations = self.equations().profile.evaluations;
-            if evaluations > EVALUATIONS[0] * taken + EVALUATIONS[1] {
+            if evaluations > EVALUATIONS[0] * (taken + self.points.len()) + EVALUATIONS[1] {
                 return ModeEnd::Evaluations;
             }
             if taken.max(self.points.len()) >= self.settings.most {
