@@ -158,3 +158,18 @@ def test_ctrl_c_in_the_search_between_wider_bounds_keeps_the_curve_before():
     curve = stop.value.result
     assert curve.interrupted
     assert curve.values.size >= 40
+
+
+def test_a_dip_before_contacts_stick_is_found():
+    """Between two values of the coarse curve: from the dip the peak rises to what is flat."""
+    coupled = np.diag([16391.0, 18112.0, 17987.0, 17159.0])
+    coupled -= 920.0 * (np.eye(4, k=1) + np.eye(4, k=-1))
+    damping = ss.Rayleigh(mass=0.02, stiffness=1.25e-6)
+    structure = ss.Structure(np.eye(4), coupled, damping, list("abcd"))
+    damper = ss.Jenkins("c", stiffness=7.8e4, slip_force=1.0)
+    forces = [ss.Force("c", 0.79, phase=2.27), ss.Force("a", 0.58, phase=3.86)]
+    model = ss.Model(structure, [damper], forces)
+    best = ss.optimal_damper(model, dof="d", harmonics=1, bounds=(0.0272, 272.0))
+    curve = ss.damper_curve(model, slip_force=np.linspace(1.4, 1.8, 9), dof="d", harmonics=1)
+    assert best.amplitude <= curve.amplitude.min()
+    assert not best.at_bound

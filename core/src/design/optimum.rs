@@ -19,6 +19,8 @@ const GAIN: f64 = 1e-8;
 const SHORTEST: f64 = 1e-7;
 /// Share of the work that the coarse curve is, for the progress.
 const CURVE_SHARE: f64 = 0.7;
+/// Slope, relative, of a curve on which nothing slips any more.
+const FLAT: f64 = 1e-9;
 /// Times that a curve which turns unseen between two values is halved there.
 const HALVINGS: usize = 4;
 /// Times that the least peak is looked for afresh, …
@@ -164,11 +166,18 @@ fn insert(trials: &mut Vec<Trial>, trial: Option<Trial>) {
 }
 
 /// Whether the curve falls from one end into the interval but ends higher, without a rise at the
-/// other end: a minimum and a maximum lie between.
+/// other end: a minimum and a maximum lie between. So does a minimum, perhaps, where it falls onto what
+/// is flat: from a dip the peak of a contact that just slips rises to that of one that sticks.
 fn turns_unseen(a: Trial, b: Trial) -> bool {
     let falls_in = a.slope < 0.0 && b.slope <= 0.0 && b.height > a.height;
     let rises_out = b.slope > 0.0 && a.slope >= 0.0 && a.height > b.height;
-    falls_in || rises_out
+    let onto_flat = a.slope < 0.0 && !is_flat(a) && is_flat(b);
+    let from_flat = b.slope > 0.0 && !is_flat(b) && is_flat(a);
+    falls_in || rises_out || onto_flat || from_flat
+}
+
+fn is_flat(trial: Trial) -> bool {
+    (trial.slope * trial.peak.value).abs() <= FLAT * trial.height
 }
 
 /// Drops every minimum that a rise of less than the share `depth` parts from a lower one.
