@@ -1,6 +1,5 @@
 """Peaks over two parameters of a design, and responses along a speed that changes the model."""
 
-import time
 from dataclasses import replace
 
 import numpy as np
@@ -8,6 +7,7 @@ import pytest
 from matplotlib.figure import Figure
 
 import stickslip as ss
+from slow_law import Slow
 from wedges import WEDGE
 
 FLAT = replace(WEDGE, angle=60.0, friction=0.2)
@@ -224,19 +224,6 @@ def test_ctrl_c_keeps_the_cells_that_are_done():
     assert whole.amplitude[0, 0] == kept.amplitude[0, 0]
     assert not whole.interrupted
     assert shares[-1] == 1.0
-
-
-class Slow(ss.ContactLaw):
-    """A spring whose steps take their time once an analysis runs."""
-
-    pause = 0.0
-
-    def stiffness(self):
-        return [[1e3]]
-
-    def step(self, before, after, state):
-        time.sleep(self.pause)
-        return 1e3 * after, state, ss.Tangents([[1.0]], [[0.0]], [[0.0]], [[0.0]], [[1e3]])
 
 
 def test_cells_that_are_done_are_kept_where_the_last_one_cannot_be_stopped(monkeypatch):

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 
 import numpy as np
@@ -78,24 +79,19 @@ def optimal_damper(
         result = _least(model, variation, kept, spans[0], run)
         # The scale of the load is too small where the structure hardly passes it on to contacts.
         if result.at_bound and spans[1:]:
-            result = _farther(result.curve, model, variation, kept, spans[1], run)
+            with _keeping(result.curve):
+                result = _least(model, variation, kept, spans[1], run)
         return run.completed(result, "optimal damper")
 
 
-def _farther(
-    known: DamperCurve,
-    model: Model,
-    variation: Variation,
-    settings: DamperSettings,
-    bounds: tuple[float, float],
-    run: Run,
-) -> OptimalDamper:
-    """Return the least peak between wider bounds; stopped early, the curve that has more values."""
+@contextmanager
+def _keeping(known: DamperCurve) -> Iterator[None]:
+    """Leave a search that is stopped with the curve before it, unless its own has more values."""
     try:
-        return _least(model, variation, settings, bounds, run)
+        yield
     except KeyboardInterrupt as stop:
-        wider = getattr(stop, "result", None)
-        if isinstance(wider, DamperCurve) and wider.values.size >= known.values.size:
+        own = getattr(stop, "result", None)
+        if isinstance(own, DamperCurve) and own.values.size >= known.values.size:
             raise
         curve = replace(known, interrupted=True)
         raise stopped("optimal damper", f"{known.values.size} peaks", curve) from None
