@@ -192,3 +192,27 @@ def test_the_schema_knows_the_disk():
     schema = json_schema()
     assert "disk" in schema["properties"]
     assert "MistuningTable" in schema["$defs"]
+
+
+@pytest.mark.parametrize(
+    ("contacts", "keys", "said"),
+    [
+        (ONE_CONTACT, 'decrement = ["1 %"]', "give all of 0 to 5, or influence instead"),
+        ("", f"damping_ratio = {6 * [-0.01]}", "give amplitude = {from = ..., to = ...}"),
+    ],
+)
+def test_remedies_are_those_of_study_files(contacts, keys, said):
+    flutter = f'\n[analysis]\nkind = "flutter-map"\n{keys}\n'
+    study = Study.parse(STRUCTURE + DISK + COUPLING + contacts + flutter)
+    with pytest.raises(ss.ModelError) as refused:
+        list(study.run())
+    assert said in str(refused.value)
+
+
+def test_bounds_of_an_optimum_are_written_as_in_study_files():
+    pad = ss.Coulomb(["a"], normal=None, friction=0.3, tangential_stiffness=1e3, preload=5.0)
+    body = ss.Structure([[1.0]], [[1e4]], ss.ModalDamping(0.01), ["a"])
+    model = ss.Model(body, [pad], [ss.Force("a", 1.0)])
+    with pytest.raises(ss.ModelError, match=r"give bounds=\(lowest") as refused:
+        ss.optimal_damper(model, dof="a", parameter="friction")
+    assert refused.value.study.endswith("give bounds = [lowest, highest]")

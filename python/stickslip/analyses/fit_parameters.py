@@ -124,7 +124,10 @@ def _loaded(model: Model, factor: float) -> Model:
         for one in model.forces
     ]
     if all(one.harmonic for one in forces):
-        raise ModelError("the model has no static load; give it a ss.Force(..., harmonic=0)")
+        raise ModelError(
+            "the model has no static load; give it a ss.Force(..., harmonic=0)",
+            study="the model has no static load; give a [[force]] with harmonic = 0",
+        )
     return model.replaced(forces=forces)
 
 

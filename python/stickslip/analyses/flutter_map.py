@@ -317,10 +317,11 @@ def _onsets(waves: AerodynamicWaves) -> tuple[float, float]:
                 if np.isfinite(limit) and limit > 0.0 and size > 0.0:
                     onsets.append(limit / size)
     if not onsets:
-        raise ModelError(
+        reason = (
             "amplitude: no contact says at which force it slips, so that the amplitudes are not "
-            "known; give amplitude=(from, to)"
+            "known; give amplitude"
         )
+        raise ModelError(f"{reason}=(from, to)", study=f"{reason} = {{from = ..., to = ...}}")
     # A contact that hardly moves in some wave would stretch the range without end.
     return float(np.min(onsets)), float(np.median(onsets))
 

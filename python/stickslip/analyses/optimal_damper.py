@@ -69,10 +69,7 @@ def optimal_damper(
     if given is None and settings.parameter == "stiffness":
         given = _stiffness_bounds(model, variation)
     if given is None and settings.parameter in COULOMB:
-        raise ModelError(
-            f"bounds: there is no default for the {settings.parameter}; give bounds=(lowest, "
-            "highest)"
-        )
+        raise _unbounded(f"there is no default for the {settings.parameter}; give")
     kept = settings_for(model, variation, np.array(given or (1.0,)), settings)
     spans = [given] if given else _load_bounds(model, variation, kept)
     with Run("optimal damper", progress, model) as run:
@@ -82,6 +79,13 @@ def optimal_damper(
             with _keeping(result.curve):
                 result = _least(model, variation, kept, spans[1], run)
         return run.completed(result, "optimal damper")
+
+
+def _unbounded(reason: str) -> ModelError:
+    return ModelError(
+        f"bounds: {reason} bounds=(lowest, highest)",
+        study=f"bounds: {reason} bounds = [lowest, highest]",
+    )
 
 
 @contextmanager
@@ -155,9 +159,9 @@ def _load_bounds(
     """Return bounds around the scale of the load, and to where nothing slips if that is farther."""
     load, ratio = _stuck_forces(model, variation, settings)
     if not ratio > 0.0:
-        raise ModelError(
-            "bounds: the contacts bear no force while they stick, so that friction does nothing; "
-            "check the forces, or give bounds=(lowest, highest)"
+        raise _unbounded(
+            "the contacts bear no force while they stick, so that friction does nothing; check the "
+            "forces, or give"
         )
     low, high = SLIDES * ratio, STICKS * ratio
     spans = [(low, high)]

@@ -216,8 +216,6 @@ def _placed(given: object, sectors: int, name: str) -> NDArray[np.complex128]:
     missing = np.flatnonzero(~np.isfinite(found))
     if missing.size:
         listed = ", ".join(map(str, missing[:6]))
-        raise ModelError(
-            f"{name}: none at nodal diameter {listed}; give all of 0 to {sectors - 1}, or "
-            "ss.InfluenceCoefficients"
-        )
+        reason = f"{name}: none at nodal diameter {listed}; give all of 0 to {sectors - 1}, or"
+        raise ModelError(f"{reason} ss.InfluenceCoefficients", study=f"{reason} influence instead")
     return found
