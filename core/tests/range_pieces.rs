@@ -79,6 +79,15 @@ fn straight_lines_hold_across_seams() {
 }
 
 #[test]
+fn a_range_of_the_last_digits_is_not_cut() {
+    let model = snecma_beam(20.313).model();
+    for range in [(100.0, 100.0 * (1.0 + 1e-9)), (100.0 * (1.0 + 1e-9), 100.0)] {
+        let (cut, _) = curve(&model, fixed(3), &[0, 1], range, 0.0);
+        assert_eq!(frequencies(&cut), [range.0, range.1]);
+    }
+}
+
+#[test]
 fn an_interrupted_curve_in_pieces_has_no_gap() {
     let model = snecma_beam(20.313).model();
     let settings = Settings { tolerance: 1e-4, ..fixed(7) };

@@ -4,6 +4,7 @@ use super::branches::sweep_branches;
 use super::course::Course;
 use super::given::finish;
 use super::seams::expected_step;
+use super::stops::SHORTEST;
 use crate::balance::condensed::Condensed;
 use crate::balance::forced::ForcedBalance;
 use crate::balance::keep;
@@ -14,8 +15,6 @@ use crate::Error;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Shortest step relative to the frequency.
-const SHORTEST: f64 = 1e-7;
 /// Distance of a straight line, in tolerances, up to which a step is good enough; …
 const FARTHEST: f64 = 2.0;
 /// … and up to which it is left alone if the point behind it shows the distance.
@@ -98,9 +97,9 @@ pub(crate) fn smooth_piece(
         }
         let room = (stop - known.omega).abs();
         // Two even steps instead of a long and a tiny one.
-        let length =
-            if step >= room { room } else { step.min(0.5 * room).max(SHORTEST * known.omega) };
-        let omega = if step >= room { stop } else { known.omega + direction * length };
+        let part = step.min(0.5 * room).max(SHORTEST * known.omega);
+        let length = if step >= room { room } else { part.min(room) };
+        let omega = if length < room { known.omega + direction * length } else { stop };
         let point = match last.filter(|last| last.omega == omega) {
             Some(last) => Point::clone(last),
             None => {

@@ -4,7 +4,7 @@
 //! another, and with them as much work. The distance of points grows with that to the next resonance, so that a
 //! straight line between two of them stays within the tolerance.
 
-use super::stops::LONGEST;
+use super::stops::{LONGEST, SHORTEST};
 use crate::balance::price::Price;
 use crate::balance::settings::{HarmonicChoice, Settings};
 use crate::model::Model;
@@ -60,7 +60,9 @@ fn expected(resonances: &[(f64, f64)], tolerance: f64, (from, to): (f64, f64)) -
     let mut course = vec![from];
     let mut omega = from;
     while (to - omega) * (to - from).signum() > 0.0 {
-        omega += expected_step(resonances, tolerance, longest, omega) * (to - from).signum();
+        // Less than a digit of the frequency would lead nowhere.
+        let step = expected_step(resonances, tolerance, longest, omega).max(SHORTEST * omega);
+        omega += step * (to - from).signum();
         course.push(omega);
     }
     course.pop();

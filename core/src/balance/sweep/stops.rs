@@ -7,6 +7,8 @@ use crate::Error;
 
 /// Longest step as a share of the range: a curve needs points to be looked at.
 pub(super) const LONGEST: f64 = 1.0 / 60.0;
+/// Shortest step relative to the frequency.
+pub(super) const SHORTEST: f64 = 1e-7;
 /// Resonances closer than this share of their bandwidths are one stop.
 const SEEN: f64 = 0.25;
 
