@@ -40,6 +40,7 @@ pub(crate) fn join_smooth(
         }
         interrupted |= piece.end == CurveEnd::Interrupted;
     }
+    keep_instead(balance.kept, &points);
     finish(balance, points, interrupted, start)
 }
 
