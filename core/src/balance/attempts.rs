@@ -50,7 +50,8 @@ impl ForcedBalance<'_> {
             return Ok(solved);
         }
         let sharp = self.attempt(resolution, omega, blurred.unknowns.as_ref())?;
-        Ok(if sharp.is_solved() { sharp } else { blurred })
+        let ended = sharp.status == PointStatus::NotComputed;
+        Ok(if sharp.is_solved() || ended { sharp } else { blurred })
     }
 
     /// The chosen method from a start, and what follows where it fails.

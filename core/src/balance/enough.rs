@@ -32,6 +32,10 @@ impl ForcedBalance<'_> {
     /// The loads themselves excite an undamped resonance.
     pub fn solve(&mut self, omega: f64, start: Option<&Unknowns>) -> Result<Point, Error> {
         let mut point = self.climb(omega, start)?;
+        // Of an analysis that is to end a point is not what it would have come to.
+        if point.status != PointStatus::Converged && self.is_ended() {
+            return Ok(self.not_computed(omega));
+        }
         let many = || self.rescue.is_some_and(|orbits| orbits.is_one_of_many(omega));
         if point.status == PointStatus::Stalled && many() {
             point.status = PointStatus::History;

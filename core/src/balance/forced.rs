@@ -172,6 +172,11 @@ impl<'a> ForcedBalance<'a> {
     }
 
     /// Whether the analysis is to end.
+    pub(super) fn is_ended(&self) -> bool {
+        !(self.progress)(self.share)
+    }
+
+    /// The same as a question for others.
     pub(super) fn interruption(&self) -> impl Fn() -> bool + 'a {
         let (progress, share) = (self.progress, self.share);
         move || !progress(share)

@@ -12,10 +12,6 @@ impl ForcedBalance<'_> {
         let interrupted = self.interruption();
         let found = || self.model.unbounded_resonances(&|_| !interrupted());
         let all = || found().unwrap_or_default().into_iter().map(|(at, _)| at).collect();
-        // What is cut short is not all.
-        if interrupted() {
-            return false;
-        }
         let known = self.unbounded.get_or_init(all);
         known.iter().any(|at| (omega - at).abs() <= BESIDE * at)
     }

@@ -21,7 +21,8 @@ const BOUNCING: f64 = 300.0;
 /// Where the harmonics left out could take the largest multiplier to the other side of 1, the point is
 /// solved with about twice as many: it is decided if they change the multiplier by less than its distance
 /// from 1. So is every point that seems unstable: a contact that nearly grazes its limit may slip in the
-/// motion of few harmonics alone. Points are judged at the same time, each by itself.
+/// motion of few harmonics alone. Points are judged at the same time, each by itself. An analysis that is
+/// ended leaves those undecided that it has not come to.
 ///
 /// # Errors
 /// As [`PeriodMap::new`], but for a wave.
@@ -51,8 +52,10 @@ pub fn decide_stability(
             return Some(clear);
         }
         let finer = with_more_harmonics(model, settings, point, progress);
-        Some(finer.map_or(clear, |finer| decided(&found, &along(&map, &finer)?)))
+        let stable = finer.map_or(clear, |finer| decided(&found, &along(&map, &finer)?));
+        progress(0.0).then_some(stable)
     });
+    solution.interrupted |= !progress(1.0);
     for (point, stable) in solution.points.iter_mut().zip(found) {
         if let Some(stable) = stable {
             Arc::make_mut(point).stable = stable;

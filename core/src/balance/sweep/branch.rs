@@ -118,7 +118,9 @@ fn walk(
     let mut walk =
         Walk { balance, points, inside, stops, bounds, longest, raised: 0, evaluations: 0 };
     let end = walk.follow(from, to)?;
-    Ok((walk.points, end))
+    // Nothing ahead is found once nothing is looked for.
+    let ended = end != CurveEnd::Range && walk.balance.is_ended();
+    Ok((walk.points, if ended { CurveEnd::Interrupted } else { end }))
 }
 
 impl Walk<'_, '_> {
@@ -235,6 +237,10 @@ impl Walk<'_, '_> {
                 walk.limit_step((length * factor).max(SHORT * STEPS.longest));
             }
             self.add_fold(curve, resolution, &point)?;
+            // What was ended on the way lacks harmonics, or a fold before it.
+            if self.balance.is_ended() {
+                return Ok(Change::Ends(CurveEnd::Interrupted));
+            }
             self.push(point);
             if let Some(end) = end {
                 return Ok(Change::Ends(end));
@@ -308,7 +314,8 @@ impl Walk<'_, '_> {
         point.samples = resolution.samples;
         let ended = !self.balance.observe.is_empty()
             && !self.balance.estimate(equations, u, &mut point, true)?;
-        if ended {
+        // What a search was to find that was ended is not where it was found.
+        if ended || self.balance.is_ended() {
             return Ok(None);
         }
         point.residual = residual;

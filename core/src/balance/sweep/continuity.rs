@@ -55,7 +55,7 @@ enum Reached {
 impl ForcedBalance<'_> {
     /// Replaces a new point by that of the branch of the last one if Newton's method has left it or
     /// found none, and says so of a point that lies behind a turn. `guess` is what the new point was
-    /// found from.
+    /// found from. A point whose branch is not known because the analysis is to end is none.
     pub(super) fn stay_on_branch(
         &mut self,
         last: &Point,
@@ -78,6 +78,9 @@ impl ForcedBalance<'_> {
                 *point = other;
                 point.jump = turned;
             }
+        }
+        if self.is_ended() {
+            *point = self.not_computed(point.omega);
         }
         Ok(())
     }

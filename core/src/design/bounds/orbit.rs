@@ -46,10 +46,11 @@ pub fn bound_orbits(
         let mut search = Search::new(model, search, observe, &curve, &tables)?;
         let found = search.along(&curve, Some(&curve.profile), progress)?;
         for ((orbit, point), found) in solved().zip(&curve.points).zip(&found) {
+            let known = of_orbit(&mut exact, &search, orbit, point, found)?;
+            // What is not found once the search is ended need not be missing.
             if !progress(1.0) {
                 break;
             }
-            let known = of_orbit(&mut exact, &search, orbit, point, found)?;
             bounds.push(known.unwrap_or_else(|| AmplitudeBounds::not_found(observe.len())));
         }
         orbits.profile.add(&exact.profile);
@@ -59,6 +60,7 @@ pub fn bound_orbits(
         Arc::make_mut(orbit).response.bounds = Some(bounds);
     }
     orbits.profile.total += start.elapsed();
+    orbits.interrupted |= !progress(1.0);
     Ok(())
 }
 

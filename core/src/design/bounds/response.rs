@@ -109,6 +109,7 @@ pub fn bound(
     }
     solution.profile.add(&search.profile);
     solution.profile.total += start.elapsed();
+    solution.interrupted |= !progress(1.0);
     Ok(())
 }
 
@@ -183,6 +184,7 @@ impl<'a> Search<'a> {
         self.affordable = effort(whole);
         for n in (0..found.len().saturating_sub(1)).rev() {
             if !progress(1.0) {
+                found[..=n].iter_mut().for_each(|one| one.cut = true);
                 break;
             }
             let (before, after) = found.split_at_mut(n + 1);

@@ -1,0 +1,118 @@
+//! Analyses that are ended on the way: what they have by then is what they would have had.
+
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::curves::{fixed, grid};
+use faer::{c64, mat, Mat};
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use std::sync::Arc;
+use stickslip_core::balance::{
+    sweep, sweep_range, Evaluation, ForcedBalance, Kept, Point, PointStatus, Progress,
+    SampleChoice, Settings, Solution,
+};
+use stickslip_core::contact::{BoucWen, ContactLaw, Cubic, Jenkins};
+use stickslip_core::model::{Contact, Model};
+use stickslip_core::orbit::decide_stability;
+use stickslip_core::structure::{HarmonicLoad, Structure};
+
+/// Two masses on a hardening spring and a law with friction: the curve folds.
+fn model(law: Box<dyn ContactLaw>) -> Model {
+    let structure = Structure::new(
+        mat![[1.0, 0.0], [0.0, 0.4]].as_ref(),
+        mat![[0.06, -0.02], [-0.02, 0.05]].as_ref(),
+        mat![[3.0, -1.0], [-1.0, 2.0]].as_ref(),
+    )
+    .unwrap();
+    let laws: [Box<dyn ContactLaw>; 2] = [Box::new(Cubic::new(0.3).unwrap()), law];
+    let row = |dof: usize| Mat::from_fn(1, 2, |_, j| f64::from(u8::from(j == dof)));
+    let contacts = laws.into_iter().enumerate().map(|(dof, law)| Contact { law, rows: row(dof) });
+    let amplitude = vec![c64::new(0.5, 0.0), c64::new(0.0, 0.0)];
+    let load = HarmonicLoad { harmonic: 1, amplitude };
+    Model::new(structure, contacts.collect(), vec![load]).unwrap()
+}
+
+/// All that points hold.
+fn bits(points: &[Arc<Point>]) -> Vec<Vec<u64>> {
+    let numbers = |point: &Arc<Point>| {
+        let series = point.displacement.iter().flat_map(|x| [x.re, x.im]);
+        let all = series.chain(point.error_estimate.clone()).chain([point.omega]);
+        let marks = [point.jump, point.fold, point.further].map(f64::from);
+        all.chain(marks).map(f64::to_bits).collect()
+    };
+    points.iter().map(numbers).collect()
+}
+
+/// Ends an analysis at many of the moments at which it asks whether to go on.
+fn ended_anywhere<T>(work: impl Fn(&Progress<'_>) -> T, moments: usize, mut see: impl FnMut(T)) {
+    let asked = AtomicUsize::new(0);
+    work(&|_| {
+        asked.fetch_add(1, Relaxed);
+        true
+    });
+    let all = asked.into_inner();
+    assert!(all > moments, "{all}");
+    for moment in (0..all).step_by(all / moments) {
+        let asked = AtomicUsize::new(0);
+        see(work(&|_| asked.fetch_add(1, Relaxed) < moment));
+    }
+}
+
+fn assert_beginnings(
+    model: &Model,
+    evaluation: Evaluation,
+    curve: impl Fn(ForcedBalance<'_>) -> Solution,
+) {
+    let settings = Settings { tolerance: 1e-2, evaluation, ..fixed(3) };
+    let work = |look: &Progress<'_>| {
+        let kept = Kept::default();
+        let balance = ForcedBalance::new(model, settings, &[0, 1]).unwrap();
+        let found = curve(balance.watched(look).keeping(&kept));
+        let kept = kept.lock().unwrap().len();
+        (found, kept)
+    };
+    let whole = bits(&work(&|_| true).0.points);
+    ended_anywhere(work, 10, |(found, kept)| {
+        let got = bits(&found.points);
+        let none = found.points[0].status == PointStatus::NotComputed;
+        assert!(none || got == whole[..got.len()], "{} of {}", got.len(), whole.len());
+        assert!(found.interrupted && (none || kept == got.len()), "{kept} {}", got.len());
+    });
+}
+
+#[test]
+fn points_of_a_curve_that_is_ended_are_those_of_the_whole() {
+    let rubbing = model(Box::new(Jenkins::new(0.2, 0.05).unwrap()));
+    let marched = model(Box::new(BoucWen::new(0.2, 0.05, 1.0, 0.5).unwrap()));
+    let coarse = Evaluation::Marched(SampleChoice::Fixed(64));
+    for (model, evaluation) in [(&rubbing, Evaluation::Direct), (&marched, coarse)] {
+        let grid = grid(1.2, 3.4, 12);
+        assert_beginnings(model, evaluation, |balance| sweep(balance, &grid).unwrap());
+        assert_beginnings(model, evaluation, |balance| sweep_range(balance, 1.6, 2.6).unwrap());
+    }
+}
+
+#[test]
+fn stability_that_was_not_asked_for_in_time_is_not_decided() {
+    let model = model(Box::new(Jenkins::new(0.2, 0.05).unwrap()));
+    let settings = Settings { tolerance: 1e-2, ..fixed(1) };
+    let balance = ForcedBalance::new(&model, settings, &[0, 1]).unwrap();
+    let curve = sweep_range(balance, 1.2, 3.4).unwrap();
+    let decided = |look: &Progress<'_>| {
+        let mut found = curve.clone();
+        decide_stability(&model, settings, &mut found, look).unwrap();
+        found
+    };
+    let whole = decided(&|_| true);
+    assert!(!whole.interrupted && whole.points.iter().any(|point| point.stable == Some(false)));
+    let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    alone.install(|| {
+        ended_anywhere(decided, 10, |found| {
+            assert!(found.interrupted);
+            for (own, all) in found.points.iter().zip(&whole.points) {
+                assert!(own.stable.is_none() || own.stable == all.stable);
+            }
+        });
+    });
+}
