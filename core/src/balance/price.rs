@@ -17,8 +17,7 @@ const IN_BLOCKS: f64 = 0.2;
 const PER_LAW: f64 = 40.0;
 /// Operations that nobody waits for, about a hundredth of a second: below them harmonics climb.
 pub(super) const TRIFLE: f64 = 1e7;
-/// Operations of a sweep from which it is cut into pieces, some tenths of a second: the start of a piece costs as
-/// much as two or three other points.
+/// Operations of a sweep from which it is cut into pieces, some tenths of a second.
 pub(crate) const MUCH: f64 = 2e9;
 /// Operations that a point may ask for at once, some seconds, …
 const AFFORDABLE: f64 = 5e9;
