@@ -8,7 +8,7 @@ use super::modes::{frequencies, lowest_squared, squared_frequencies};
 use super::ports::{forced_harmonics, Ports};
 use super::proportional::follows_mass;
 use super::restraint::store;
-use super::{Compliance, Outline, Quantity, Receptance, Request, Structure};
+use super::{pays_for_modes, Compliance, Outline, Quantity, Receptance, Request, Structure};
 use crate::Error;
 use faer::{c64, Mat};
 use std::sync::OnceLock;
@@ -100,6 +100,11 @@ impl Compliance for InterfaceCompliance {
 
     fn contact_modes(&self) -> Option<&dyn ContactCoordinates> {
         Some(&self.modes)
+    }
+
+    /// Those without contacts take a decomposition.
+    fn finds_modes(&self, asked: usize) -> bool {
+        pays_for_modes(self.dofs(), asked, self.effort(0)[0])
     }
 
     fn lowest_frequencies(&self) -> Option<[f64; 2]> {
@@ -200,7 +205,12 @@ mod tests {
         let compliance = InterfaceCompliance::new(&structure.unwrap(), &ports).unwrap().unwrap();
         let [stuck, free] = compliance.lowest_frequencies().unwrap();
         assert!((stuck * stuck - free * free - 3.0).abs() < 1e-5);
+        // Few questions do not pay for them, and a passage of less than a bandwidth needs none.
+        assert!(
+            !compliance.is_clear(3, [90.0, 91.0], 1) && compliance.is_clear(3, [90.0, 90.1], 1)
+        );
         assert!(compliance.free.get().is_none());
+        assert!(compliance.is_clear(3, [90.0, 91.0], 1000));
         let all = compliance.free_frequencies();
         assert!((all[0] / free - 1.0).abs() < 1e-5 && all.len() == size);
     }

@@ -211,17 +211,33 @@ pub trait Compliance: Send + Sync {
     /// Whether no mode that a harmonic sees, with the contacts stuck or removed, resonates within a range that
     /// it passes in less than half of that [rad/s]. What does not know its modes says no, until `asked`
     /// questions before this one have cost as much as to find them.
-    fn is_clear(&self, _harmonic: usize, range: [f64; 2], _asked: usize) -> bool {
-        let lists = [self.stuck_frequencies(), self.free_frequencies()];
-        let known = lists.iter().any(|list| !list.is_empty());
+    fn is_clear(&self, _harmonic: usize, range: [f64; 2], asked: usize) -> bool {
+        let is_clear = |list: &[f64]| !list.is_empty() && within(list, range).is_empty();
         self.narrowest_bandwidth() >= 0.5 * (range[1] - range[0])
-            || (known && lists.iter().all(|list| within(list, range).is_empty()))
+            || (self.finds_modes(asked)
+                && is_clear(self.stuck_frequencies())
+                && is_clear(self.free_frequencies()))
+    }
+
+    /// Whether its natural frequencies are known, or so many questions pay for a decomposition.
+    fn finds_modes(&self, _asked: usize) -> bool {
+        true
     }
 
     /// Half-power bandwidth `2ζω` of the least damped mode, where it is known [rad/s].
     fn narrowest_bandwidth(&self) -> f64 {
         self.outline().bandwidth
     }
+}
+
+/// DOFs of the largest structure that is decomposed only to know its modes: that takes less than a second.
+const LARGEST: usize = 1500;
+
+/// Whether so many answers that take an effort each \[ns\] pay for a decomposition of some DOFs.
+fn pays_for_modes(dofs: usize, answers: usize, effort: f64) -> bool {
+    let size = dofs as f64;
+    let decomposition = 0.2 * size.powi(3) + 1.5e4 * size;
+    dofs <= LARGEST && answers as f64 * effort > decomposition
 }
 
 /// Positions of the entries of an ascending list within a range.

@@ -2,12 +2,9 @@
 
 use super::ring::Ring;
 use super::ring_order::{RingMotion, RingOrder};
-use super::{within, Compliance, Outline, Quantity, Receptance, Request};
+use super::{pays_for_modes, Compliance, Outline, Quantity, Receptance, Request};
 use crate::Error;
 use faer::c64;
-
-/// DOFs of a disk that is decomposed to know its modes: that takes less than a second.
-const LARGEST: usize = 1500;
 
 impl Ring {
     /// [`Compliance::displacement`] with the equations of this harmonic and frequency and the motion
@@ -137,18 +134,8 @@ impl Compliance for Ring {
 
     /// The modes of the whole disk take a decomposition of it; their damping is about that of the sectors
     /// with their neighbours held still.
-    fn is_clear(&self, _harmonic: usize, range: [f64; 2], asked: usize) -> bool {
-        if self.narrowest_bandwidth() >= 0.5 * (range[1] - range[0]) {
-            return true;
-        }
-        if self.dofs() > LARGEST {
-            return false;
-        }
-        let dofs = self.dofs() as f64;
-        let decomposition = 0.2 * dofs.powi(3) + 1.5e4 * dofs;
-        let pays = asked as f64 * self.effort(self.dofs())[0] > decomposition;
-        let is_clear = |list: &Vec<f64>| !list.is_empty() && within(list, range).is_empty();
-        pays && self.natural().iter().all(is_clear)
+    fn finds_modes(&self, asked: usize) -> bool {
+        pays_for_modes(self.dofs(), asked, self.effort(self.dofs())[0])
     }
 
     /// Of the sectors with their neighbours held still, which takes no decomposition of the whole

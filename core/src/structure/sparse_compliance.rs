@@ -6,7 +6,7 @@ use super::modes::{squared_frequencies, RealModes};
 use super::ports::{forced_harmonics, Ports};
 use super::restraint::store;
 use super::sparse_contacts::SparseContacts;
-use super::{Compliance, Outline, Quantity, Receptance, Request, Structure};
+use super::{pays_for_modes, Compliance, Outline, Quantity, Receptance, Request, Structure};
 use crate::Error;
 use faer::linalg::solvers::Solve as _;
 use faer::{c64, Mat};
@@ -119,6 +119,11 @@ impl Compliance for SparseCompliance {
         })
     }
 
+    /// They take a decomposition of what is sparse.
+    fn finds_modes(&self, asked: usize) -> bool {
+        pays_for_modes(self.dofs(), asked, self.effort(0)[0])
+    }
+
     fn lowest_frequencies(&self) -> Option<[f64; 2]> {
         Some(self.contacts.lowest())
     }
@@ -129,5 +134,35 @@ impl Compliance for SparseCompliance {
 
     fn free_frequencies(&self) -> &[f64] {
         self.frequencies(false)
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    /// What a sweep asks for takes no decomposition.
+    #[test]
+    fn frequencies_are_found_only_when_many_questions_pay_for_them() {
+        let (size, contacts) = (300, 150);
+        let between = |i: usize, j: usize| match i.abs_diff(j) {
+            0 => 2.5,
+            1 => -1.0,
+            _ => 0.0,
+        };
+        let stiffness = Mat::from_fn(size, size, between);
+        let mass = Mat::<f64>::identity(size, size);
+        let damping = faer::Scale(0.1) * &mass;
+        let structure = Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref());
+        let rows = Mat::from_fn(contacts, size, |i, j| f64::from(u8::from(j == 2 * i)));
+        let held = faer::Scale(3.0) * Mat::<f64>::identity(contacts, contacts);
+        let ports = Ports { rows, stiffness: held, loads: Vec::new() };
+        let compliance = SparseCompliance::new(&structure.unwrap(), &ports).unwrap().unwrap();
+        assert!(
+            !compliance.is_clear(3, [90.0, 91.0], 1) && compliance.is_clear(3, [90.0, 90.1], 1)
+        );
+        assert!(compliance.frequencies.iter().all(|list| list.get().is_none()));
+        assert!(compliance.is_clear(3, [90.0, 91.0], 1_000_000));
     }
 }
