@@ -87,23 +87,24 @@ impl Model {
                 for (j, pole) in state.poles.values.iter().enumerate() {
                     let driven = bearing.driven(state, j);
                     let decay = pole.re.abs() + bearing.lost(state, j, order);
+                    let moved = shift(driven, decay, &|| bearing.points(state, j));
+                    let met = [Some(pole.im), moved.map(|by| pole.im + by)].into_iter().flatten();
+                    let met: Vec<f64> = met.map(|w| w / order).filter(|&w| inside(w)).collect();
+                    // How far it reaches takes most of the time, and most are met elsewhere.
+                    if met.is_empty() {
+                        continue;
+                    }
                     let reach = bearing.reach_beyond(states, state, j, decay);
                     let unbounded = grown.iter().find(|one| one.poles.contains(&j));
                     let unbounded = unbounded.map_or_else(Vec::new, |one| one.dofs.clone());
-                    let moved = shift(driven, decay, &|| bearing.points(state, j));
-                    for omega in [Some(pole.im), moved.map(|by| pole.im + by)] {
-                        let Some(omega) = omega.map(|w| w / order).filter(|&w| inside(w)) else {
-                            continue;
-                        };
-                        found.push(Resonance {
-                            omega,
-                            bandwidth: 2.0 * decay / order,
-                            reach: Some(reach.clone()),
-                            unbounded: unbounded.clone(),
-                            forced: is_forced,
-                            partial: state.carried > 0.0,
-                        });
-                    }
+                    found.extend(met.into_iter().map(|omega| Resonance {
+                        omega,
+                        bandwidth: 2.0 * decay / order,
+                        reach: Some(reach.clone()),
+                        unbounded: unbounded.clone(),
+                        forced: is_forced,
+                        partial: state.carried > 0.0,
+                    }));
                 }
             }
         }
