@@ -77,10 +77,19 @@ fn swept<'py>(
                 let both = points.iter().zip(order);
                 points.truncate(both.take_while(|(point, omega)| point.omega == **omega).count());
             }
-            let half_wave = points.first()?.unknowns()?.harmonics().half_wave();
+            // The first point may have no solution.
+            let known = points.iter().find_map(|point| point.unknowns());
+            let half_wave = known.is_some_and(|known| known.harmonics().half_wave());
             let profile = Profile::default();
             let end = CurveEnd::Interrupted;
-            Some(balance::Solution { points, half_wave, interrupted: true, end, cut: 0, profile })
+            (!points.is_empty()).then_some(balance::Solution {
+                points,
+                half_wave,
+                interrupted: true,
+                end,
+                cut: 0,
+                profile,
+            })
         },
     )?;
     let points = found.points.iter().map(AsRef::as_ref);

@@ -1,6 +1,7 @@
 """Interruption and progress of forced responses: what was computed is kept."""
 
 import pickle
+import time
 from dataclasses import replace
 
 import numpy as np
@@ -53,6 +54,42 @@ def test_interruption_of_a_range():
     assert partial.omega[-1] < 250.0
     assert any(f"end at {partial.omega[-1]:.6g} rad/s" in text for text in partial.assumptions)
     assert not any("between 150 and 250" in text for text in partial.assumptions)
+
+
+class Dozing(ss.ContactLaw):
+    """The Jenkins element, which falls asleep."""
+
+    odd = monotone = True
+    asleep = False
+
+    def stiffness(self):
+        return [[1e4]]
+
+    def step(self, before, after, state):
+        time.sleep(1.5 if self.asleep else 1e-4)
+        trial = state + 1e4 * (after - before)
+        sticks = (np.abs(trial) <= 1.0)[..., None].astype(float)
+        force = np.clip(trial, -1.0, 1.0)
+        return force, force, ss.Tangents(sticks, -1e4 * sticks, 1e4 * sticks, [[1.0]], [[0.0]])
+
+
+def test_a_first_point_without_a_solution_does_not_lose_the_others(monkeypatch):
+    """What is left to itself has put its points aside, whether they are solved or not."""
+    structure = ss.Structure([[1.0]], [[4e4]], dofs=["tip"])
+    model = ss.Model(structure, [Dozing(["tip"])], [ss.Force("tip", 10.0)])
+    omega = np.array([np.sqrt(5e4) / 3.0, *range(90, 110)])
+
+    def press(done):
+        if done > 0.5:
+            monkeypatch.setattr(Dozing, "asleep", True)
+            raise KeyboardInterrupt
+
+    with pytest.raises(ss.Interrupted) as caught:
+        ss.forced_response(model, omega, 3, progress=press)
+    partial = caught.value.result
+    assert 5 < partial.omega.size < omega.size
+    assert not partial.converged[0]
+    assert partial.converged[1:].all()
 
 
 def test_an_interruption_can_be_pickled(frf):
