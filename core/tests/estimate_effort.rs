@@ -33,52 +33,40 @@ impl<L> Counted<L> {
     }
 }
 
+/// Methods that a law has from the one that it is made of.
+macro_rules! of {
+    ($to:ident: $($method:ident($($argument:ident: $type:ty),*) $(-> $returned:ty)?;)*) => {
+        $(fn $method(&self, $($argument: $type),*) $(-> $returned)? {
+            self.$to().$method($($argument),*)
+        })*
+    };
+}
+
+impl<L: ContactLaw + Clone + 'static> Counted<L> {
+    fn law(&self) -> &L {
+        &self.law
+    }
+
+    fn exact(&self) -> &dyn HarmonicForce {
+        self.law.closed_form().unwrap()
+    }
+}
+
 impl<L: ContactLaw + Clone + 'static> ContactLaw for Counted<L> {
-    fn name(&self) -> &'static str {
-        self.law.name()
-    }
-
-    fn displacements(&self) -> usize {
-        self.law.displacements()
-    }
-
-    fn state_size(&self) -> usize {
-        self.law.state_size()
-    }
-
-    fn stiffness(&self) -> Mat<f64> {
-        self.law.stiffness()
-    }
-
-    fn state_stiffness(&self) -> Mat<f64> {
-        self.law.state_stiffness()
-    }
-
-    fn is_odd(&self) -> bool {
-        self.law.is_odd()
-    }
-
-    fn is_monotone(&self) -> bool {
-        self.law.is_monotone()
-    }
-
-    fn limits(&self) -> Vec<f64> {
-        self.law.limits()
-    }
-
-    fn surely_slips(&self, motion: Motion<'_>) -> Option<bool> {
-        self.law.surely_slips(motion)
-    }
-
-    fn return_map(
-        &self,
-        before: &[f64],
-        after: &[f64],
-        state: &mut [f64],
-        force: &mut [f64],
-        jacobian: Option<&mut ReturnMapJacobian>,
-    ) {
-        self.law.return_map(before, after, state, force, jacobian);
+    of! {
+        law:
+        name() -> &'static str;
+        displacements() -> usize;
+        state_size() -> usize;
+        stiffness() -> Mat<f64>;
+        state_stiffness() -> Mat<f64>;
+        is_odd() -> bool;
+        is_monotone() -> bool;
+        limits() -> Vec<f64>;
+        surely_slips(motion: Motion<'_>) -> Option<bool>;
+        return_map(before: &[f64], after: &[f64], state: &mut [f64], force: &mut [f64],
+            jacobian: Option<&mut ReturnMapJacobian>);
+        with_scaled_forces(factor: f64) -> Box<dyn ContactLaw>;
     }
 
     fn with_scaled_stiffness(&self, share: f64) -> Box<dyn ContactLaw> {
@@ -86,46 +74,25 @@ impl<L: ContactLaw + Clone + 'static> ContactLaw for Counted<L> {
         Box::new(self.clone())
     }
 
-    fn with_scaled_forces(&self, factor: f64) -> Box<dyn ContactLaw> {
-        self.law.with_scaled_forces(factor)
-    }
-
     fn closed_form(&self) -> Option<&dyn HarmonicForce> {
-        self.law.closed_form().map(|_| self as &dyn HarmonicForce)
-    }
-}
-
-impl<L: ContactLaw + Clone + 'static> Counted<L> {
-    fn exact(&self) -> &dyn HarmonicForce {
-        self.law.closed_form().unwrap()
+        Some(self)
     }
 }
 
 impl<L: ContactLaw + Clone + 'static> HarmonicForce for Counted<L> {
+    of! {
+        exact:
+        summary(motion: Motion<'_>, out: &mut [PointSummary]);
+        state_history(motion: Motion<'_>, samples: usize) -> Vec<f64>;
+        force_history(motion: Motion<'_>, samples: usize) -> Vec<f64>;
+        phases(motion: Motion<'_>) -> Vec<Phase>;
+        parameter_slope(motion: Motion<'_>, index: usize, out: &mut [f64]);
+    }
+
     fn slip_load(&self, motion: Motion<'_>, tangent: bool, out: &mut SlipLoad) {
         let beyond = motion.table.harmonics().highest() > self.kept;
         self.beyond.fetch_add(usize::from(beyond), Relaxed);
         self.exact().slip_load(motion, tangent, out);
-    }
-
-    fn summary(&self, motion: Motion<'_>, out: &mut [PointSummary]) {
-        self.exact().summary(motion, out);
-    }
-
-    fn state_history(&self, motion: Motion<'_>, samples: usize) -> Vec<f64> {
-        self.exact().state_history(motion, samples)
-    }
-
-    fn force_history(&self, motion: Motion<'_>, samples: usize) -> Vec<f64> {
-        self.exact().force_history(motion, samples)
-    }
-
-    fn phases(&self, motion: Motion<'_>) -> Vec<Phase> {
-        self.exact().phases(motion)
-    }
-
-    fn parameter_slope(&self, motion: Motion<'_>, index: usize, out: &mut [f64]) {
-        self.exact().parameter_slope(motion, index, out);
     }
 }
 

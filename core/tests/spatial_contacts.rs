@@ -4,10 +4,10 @@
 
 mod common;
 
+use common::chain;
 use common::differences::{assert_multipliers, multiplier_error};
 use faer::{c64, Mat};
 use proptest::prelude::*;
-use std::f64::consts::PI;
 use stickslip_core::balance::PointStatus;
 use stickslip_core::contact::{Closure, ContactLaw, Coulomb};
 use stickslip_core::model::{Contact, Model};
@@ -226,13 +226,9 @@ struct Chain {
 
 impl Chain {
     fn model(&self) -> Model {
-        let (n, springs) = (self.masses.len(), &self.springs);
+        let n = self.masses.len();
         let mass = diagonal(&self.masses);
-        let stiffness = Mat::from_fn(n, n, |i, j| match i.abs_diff(j) {
-            0 => springs[i] + springs.get(i + 1).copied().unwrap_or(0.0),
-            1 => -springs[i.max(j)],
-            _ => 0.0,
-        });
+        let stiffness = chain::stiffness(&self.springs);
         let damping = faer::Scale(self.damping) * &mass;
         let structure =
             Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref()).unwrap();
@@ -262,29 +258,23 @@ impl Chain {
 }
 
 fn chain() -> impl Strategy<Value = Chain> {
-    (2_usize..7, 1_usize..4)
-        .prop_flat_map(|(dofs, pads)| {
-            let pad = (
-                prop::collection::vec(-1.0_f64..1.0, 3 * dofs),
-                0.1_f64..1.2,
-                50.0_f64..500.0,
-                50.0_f64..500.0,
-                0_usize..3,
-                -0.005_f64..0.01,
-            );
-            let load = (0..dofs, 0_usize..3, 0.2_f64..3.0, -PI..PI);
-            (
-                prop::collection::vec(0.5_f64..3.0, dofs),
-                prop::collection::vec(50.0_f64..500.0, dofs),
-                prop::collection::vec(pad, pads),
-                prop::collection::vec(load, 1..4),
-                0.1_f64..0.6,
-            )
-        })
-        .prop_map(|(masses, springs, pads, mut loads, damping)| {
-            loads[0].1 = 1;
-            Chain { masses, springs, pads, loads, damping }
-        })
+    let pad = |dofs: usize| {
+        (
+            prop::collection::vec(-1.0_f64..1.0, 3 * dofs),
+            0.1_f64..1.2,
+            50.0_f64..500.0,
+            50.0_f64..500.0,
+            0_usize..3,
+            -0.005_f64..0.01,
+        )
+    };
+    chain::chains(1..4, pad).prop_map(|(masses, springs, pads, loads, damping)| Chain {
+        masses,
+        springs,
+        pads,
+        loads,
+        damping,
+    })
 }
 
 proptest! {

@@ -1,6 +1,7 @@
 //! Reference systems and an independent time integration, shared by all tests.
 #![allow(dead_code, clippy::unwrap_used)]
 
+pub mod chain;
 pub mod coupled;
 pub mod curves;
 pub mod damper;

@@ -1,6 +1,6 @@
 //! Random passive systems.
 
-use super::System;
+use super::{chain, System};
 use faer::Mat;
 use proptest::prelude::*;
 use std::f64::consts::PI;
@@ -20,11 +20,7 @@ pub fn passive_system() -> impl Strategy<Value = System> {
         .prop_map(|(masses, springs, dampers, forces, damping)| {
             let n = masses.len();
             let mass = Mat::from_fn(n, n, |i, j| if i == j { masses[i] } else { 0.0 });
-            let stiffness = Mat::from_fn(n, n, |i, j| match i.abs_diff(j) {
-                0 => springs[i] + springs.get(i + 1).copied().unwrap_or(0.0),
-                1 => -springs[i.max(j)],
-                _ => 0.0,
-            });
+            let stiffness = chain::stiffness(&springs);
             let damping = faer::Scale(damping) * &mass + faer::Scale(1e-4) * &stiffness;
             System {
                 mass,

@@ -1,9 +1,10 @@
 //! Systems with planar Coulomb contacts, and their motion by short steps.
 
+use super::chain;
 use faer::linalg::solvers::DenseSolveCore as _;
 use faer::{c64, Mat};
 use proptest::prelude::*;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 use stickslip_core::contact::{Closure, Coulomb};
 use stickslip_core::model::{Contact, Model};
 use stickslip_core::structure::{HarmonicLoad, Structure};
@@ -167,58 +168,43 @@ pub fn block(static_load: f64, loads: [f64; 2]) -> Planar {
 
 /// Chains of masses with contacts in random directions, under preload or behind a gap.
 pub fn planar_system() -> impl Strategy<Value = Planar> {
-    (2_usize..7, 1_usize..5)
-        .prop_flat_map(|(dofs, pads)| {
-            let pad = (
-                prop::collection::vec(-1.0_f64..1.0, 2 * dofs),
-                0.0_f64..1.2,
-                50.0_f64..500.0,
-                50.0_f64..500.0,
-                prop::bool::ANY,
-                -0.005_f64..0.01,
-            );
-            let load = (0..dofs, 0_usize..3, 0.2_f64..3.0, -PI..PI);
-            (
-                prop::collection::vec(0.5_f64..3.0, dofs),
-                prop::collection::vec(50.0_f64..500.0, dofs),
-                prop::collection::vec(pad, pads),
-                prop::collection::vec(load, 1..4),
-                0.1_f64..0.6,
-            )
-        })
-        .prop_map(|(masses, springs, pads, mut loads, damping)| {
-            let n = masses.len();
-            loads[0].1 = 1;
-            let mass = Mat::from_fn(n, n, |i, j| if i == j { masses[i] } else { 0.0 });
-            let stiffness = Mat::from_fn(n, n, |i, j| match i.abs_diff(j) {
-                0 => springs[i] + springs.get(i + 1).copied().unwrap_or(0.0),
-                1 => -springs[i.max(j)],
-                _ => 0.0,
-            });
-            let pad = |(rows, friction, tangential, normal, preloaded, size): (
-                Vec<f64>,
-                f64,
-                f64,
-                f64,
-                bool,
-                f64,
-            )| Pad {
-                rows: Mat::from_fn(2, n, |i, j| rows[i * n + j]),
-                friction,
-                tangential,
-                normal,
-                closure: if preloaded {
-                    Closure::Preload(100.0 * f64::abs(size))
-                } else {
-                    Closure::Gap(size)
-                },
-            };
-            Planar {
-                damping: faer::Scale(damping) * &mass,
-                mass,
-                stiffness,
-                pads: pads.into_iter().map(pad).collect(),
-                loads,
-            }
-        })
+    let pad = |dofs: usize| {
+        (
+            prop::collection::vec(-1.0_f64..1.0, 2 * dofs),
+            0.0_f64..1.2,
+            50.0_f64..500.0,
+            50.0_f64..500.0,
+            prop::bool::ANY,
+            -0.005_f64..0.01,
+        )
+    };
+    chain::chains(1..5, pad).prop_map(|(masses, springs, pads, loads, damping)| {
+        let n = masses.len();
+        let mass = Mat::from_fn(n, n, |i, j| if i == j { masses[i] } else { 0.0 });
+        let pad = |(rows, friction, tangential, normal, preloaded, size): (
+            Vec<f64>,
+            f64,
+            f64,
+            f64,
+            bool,
+            f64,
+        )| Pad {
+            rows: Mat::from_fn(2, n, |i, j| rows[i * n + j]),
+            friction,
+            tangential,
+            normal,
+            closure: if preloaded {
+                Closure::Preload(100.0 * f64::abs(size))
+            } else {
+                Closure::Gap(size)
+            },
+        };
+        Planar {
+            damping: faer::Scale(damping) * &mass,
+            mass,
+            stiffness: chain::stiffness(&springs),
+            pads: pads.into_iter().map(pad).collect(),
+            loads,
+        }
+    })
 }
