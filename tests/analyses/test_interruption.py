@@ -1,7 +1,6 @@
 """Interruption and progress of forced responses: what was computed is kept."""
 
 import pickle
-import time
 from dataclasses import replace
 
 import numpy as np
@@ -9,6 +8,7 @@ import pytest
 
 import stickslip as ss
 from rubbing import beam_response, one_dof
+from slow_law import Slow
 from stickslip.reference import snecma_beam
 from stickslip.results.arrays import Arrays
 
@@ -56,32 +56,17 @@ def test_interruption_of_a_range():
     assert not any("between 150 and 250" in text for text in partial.assumptions)
 
 
-class Dozing(ss.ContactLaw):
-    """The Jenkins element, which falls asleep."""
-
-    odd = monotone = True
-    asleep = False
-
-    def stiffness(self):
-        return [[1e4]]
-
-    def step(self, before, after, state):
-        time.sleep(1.5 if self.asleep else 1e-4)
-        trial = state + 1e4 * (after - before)
-        sticks = (np.abs(trial) <= 1.0)[..., None].astype(float)
-        force = np.clip(trial, -1.0, 1.0)
-        return force, force, ss.Tangents(sticks, -1e4 * sticks, 1e4 * sticks, [[1.0]], [[0.0]])
-
-
 def test_a_first_point_without_a_solution_does_not_lose_the_others(monkeypatch):
     """What is left to itself has put its points aside, whether they are solved or not."""
     structure = ss.Structure([[1.0]], [[4e4]], dofs=["tip"])
-    model = ss.Model(structure, [Dozing(["tip"])], [ss.Force("tip", 10.0)])
-    omega = np.array([np.sqrt(5e4) / 3.0, *range(90, 110)])
+    model = ss.Model(structure, [Slow(["tip"])], [ss.Force("tip", 10.0)])
+    omega = np.array([np.sqrt(4.1e4) / 3.0, *range(90, 110)])
+
+    monkeypatch.setattr(Slow, "pause", 1e-4)
 
     def press(done):
         if done > 0.5:
-            monkeypatch.setattr(Dozing, "asleep", True)
+            monkeypatch.setattr(Slow, "pause", 1.5)
             raise KeyboardInterrupt
 
     with pytest.raises(ss.Interrupted) as caught:
