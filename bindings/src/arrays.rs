@@ -9,6 +9,7 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use std::ops::Deref;
 use stickslip_core::fourier::Harmonics;
+use stickslip_core::structure::Matrix;
 
 /// Most instants of a history, over all of its columns: more do not fit into memory.
 const MOST_VALUES: usize = 1 << 28;
@@ -72,6 +73,21 @@ pyo3::create_exception!(_core, TooFastError, PyValueError);
 /// A dense matrix from a two-dimensional array.
 pub fn matrix(array: &Array2<'_, f64>) -> faer::Mat<f64> {
     dense(array.as_array())
+}
+
+/// A matrix from a two-dimensional array, by its numbers if they are few.
+pub fn sparse(array: &Array2<'_, f64>) -> Matrix {
+    let view = array.as_array();
+    let (rows, columns) = view.dim();
+    let mut entries = Vec::new();
+    for (i, row) in view.outer_iter().enumerate() {
+        if !Matrix::is_few(rows, columns, entries.len()) {
+            return dense(view).into();
+        }
+        let numbers = row.into_iter().enumerate().filter(|(_, x)| **x != 0.0);
+        entries.extend(numbers.map(|(j, x)| (i, j, *x)));
+    }
+    Matrix::of_entries(rows, columns, &entries)
 }
 
 /// Dense matrices from the first dimension of a three-dimensional array.

@@ -2,7 +2,7 @@
 
 use crate::arrays::{matrix, refused, Array2};
 use crate::problem::{
-    harmonic_loads, ring_coupling, sector_contacts, Forces, Matrix, Problem, SectorContactSpec,
+    harmonic_loads, ring_coupling, sector_contacts, Forces, Problem, SectorContactSpec, Table,
 };
 use crate::settings::{self, get, harmonic, measure};
 use crate::watch::{raise_unless_interrupt, watched_parts, whole};
@@ -26,11 +26,11 @@ impl TunedDisk {
     /// contacts of every sector, and forces sector by sector; whether a law made all of the damping.
     #[new]
     fn new(
-        mass: Matrix<'_>,
-        stiffness: Matrix<'_>,
-        coupled_stiffness: Matrix<'_>,
-        damping: (Matrix<'_>, Matrix<'_>, Matrix<'_>),
-        coupling: (Matrix<'_>, Matrix<'_>, Matrix<'_>),
+        mass: Table<'_>,
+        stiffness: Table<'_>,
+        coupled_stiffness: Table<'_>,
+        damping: (Table<'_>, Table<'_>, Table<'_>),
+        coupling: (Table<'_>, Table<'_>, Table<'_>),
         contacts: Vec<SectorContactSpec<'_>>,
         forces: Vec<Forces<'_>>,
         proportional: bool,

@@ -1,6 +1,6 @@
 //! The problem: structure, contacts and loads in numbers.
 
-use crate::arrays::{matrices, matrix, refused, Array1, Array2, Array3};
+use crate::arrays::{matrices, matrix, refused, sparse, Array1, Array2, Array3};
 use crate::python_law::PythonLaw;
 use crate::settings::residual;
 use crate::watch::whole;
@@ -16,10 +16,10 @@ use stickslip_core::structure::{
 };
 use stickslip_core::Error;
 
-pub type Matrix<'py> = Array2<'py, f64>;
+pub type Table<'py> = Array2<'py, f64>;
 /// A law by its name, or as an object of Python that is one; rows of B; parameters.
-type ContactSpec<'py> = (Bound<'py, PyAny>, Matrix<'py>, Bound<'py, PyDict>);
-pub type SectorContactSpec<'py> = (Bound<'py, PyAny>, Matrix<'py>, Matrix<'py>, Bound<'py, PyDict>);
+type ContactSpec<'py> = (Bound<'py, PyAny>, Table<'py>, Bound<'py, PyDict>);
+pub type SectorContactSpec<'py> = (Bound<'py, PyAny>, Table<'py>, Table<'py>, Bound<'py, PyDict>);
 pub type Forces<'py> = Vec<(usize, Array1<'py, Complex64>)>;
 
 /// A structure with its contacts and loads, decomposed once.
@@ -75,17 +75,17 @@ impl Problem {
     #[new]
     fn new(
         py: Python<'_>,
-        mass: Array2<'_, f64>,
-        damping: Array2<'_, f64>,
-        stiffness: Array2<'_, f64>,
+        mass: Table<'_>,
+        damping: Table<'_>,
+        stiffness: Table<'_>,
         contacts: &Bound<'_, PyAny>,
         forces: Forces<'_>,
         proportional: bool,
     ) -> PyResult<Self> {
-        let (mass, damping, stiffness) = (matrix(&mass), matrix(&damping), matrix(&stiffness));
+        let (mass, damping, stiffness) = (sparse(&mass), sparse(&damping), sparse(&stiffness));
         let contact = |given: PyResult<Bound<'_, PyAny>>| {
             let (name, rows, given): ContactSpec<'_> = given?.extract()?;
-            Ok(Contact { law: law_of(&name, &given)?, rows: matrix(&rows) })
+            Ok(Contact { law: law_of(&name, &given)?, rows: sparse(&rows) })
         };
         let contacts = contacts.try_iter()?.map(contact).collect::<PyResult<Vec<_>>>()?;
         let loads = harmonic_loads(forces);
@@ -101,9 +101,9 @@ impl Problem {
     #[staticmethod]
     fn travelling_wave(
         py: Python<'_>,
-        mass: (Matrix<'_>, Matrix<'_>),
-        damping: (Matrix<'_>, Matrix<'_>),
-        stiffness: (Matrix<'_>, Matrix<'_>),
+        mass: (Table<'_>, Table<'_>),
+        damping: (Table<'_>, Table<'_>),
+        stiffness: (Table<'_>, Table<'_>),
         sectors: usize,
         engine_order: usize,
         contacts: Vec<SectorContactSpec<'_>>,
@@ -131,9 +131,9 @@ impl Problem {
     #[staticmethod]
     fn ring(
         py: Python<'_>,
-        mass: (Array3<'_, f64>, Matrix<'_>),
-        damping: (Array3<'_, f64>, Matrix<'_>),
-        stiffness: (Array3<'_, f64>, Matrix<'_>),
+        mass: (Array3<'_, f64>, Table<'_>),
+        damping: (Array3<'_, f64>, Table<'_>),
+        stiffness: (Array3<'_, f64>, Table<'_>),
         contacts: Vec<Vec<SectorContactSpec<'_>>>,
         forces: Vec<Forces<'_>>,
         proportional: bool,
@@ -229,7 +229,7 @@ pub fn sector_contacts(contacts: Vec<SectorContactSpec<'_>>) -> PyResult<Vec<Sec
 }
 
 /// Blocks of mass, damping and stiffness to the next sector.
-pub fn ring_coupling(blocks: [Matrix<'_>; 3]) -> RingCoupling {
+pub fn ring_coupling(blocks: [Table<'_>; 3]) -> RingCoupling {
     let [mass, damping, stiffness] = blocks.map(|block| matrix(&block));
     RingCoupling { mass, damping, stiffness }
 }

@@ -25,7 +25,7 @@ fn parts(system: &System) -> (Structure, Ports) {
         HarmonicLoad { harmonic: 1, amplitude },
         HarmonicLoad { harmonic: 0, amplitude: vec![c64::new(3.0, 0.0); system.dofs()] },
     ];
-    (structure, Ports { rows, stiffness, loads })
+    (structure, Ports { rows: rows.into(), stiffness: stiffness.into(), loads })
 }
 
 fn with_damping(mut system: System, damping: Mat<f64>) -> System {
@@ -124,7 +124,7 @@ fn chain(count: usize, damping: &str) -> (Structure, Ports) {
         HarmonicLoad { harmonic: 1, amplitude },
         HarmonicLoad { harmonic: 0, amplitude: vec![c64::new(3.0, 0.0); count] },
     ];
-    (structure, Ports { rows, stiffness, loads })
+    (structure, Ports { rows: rows.into(), stiffness: stiffness.into(), loads })
 }
 
 #[test]
@@ -205,7 +205,7 @@ fn chains_without_damping_or_support_are_seen_by_their_modes() {
         1 => -1.0,
         _ => 0.0,
     });
-    let ports = Ports { rows, ..ports };
+    let ports = Ports { rows: rows.into(), ..ports };
     assert_eq!(compliance(&loose, &ports).unwrap().1, "stuck modes");
 }
 
@@ -351,7 +351,8 @@ fn a_strongly_damped_high_mode_hides_no_coupling_of_low_ones() {
     let stiffness = mat![[1000.0, 0.0, 0.0], [0.0, 1000.5, 0.0], [0.0, 0.0, 1e14]];
     let mass = Mat::<f64>::identity(3, 3);
     let structure = Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref()).unwrap();
-    let ports = Ports { rows: Mat::zeros(0, 3), stiffness: Mat::zeros(0, 0), loads: vec![] };
+    let ports =
+        Ports { rows: Mat::zeros(0, 3).into(), stiffness: Mat::zeros(0, 0).into(), loads: vec![] };
     let (_, base) = compliance(&structure, &ports).unwrap();
     assert!(base == "complex modes" || base == "direct", "{base}");
 }

@@ -46,8 +46,8 @@ fn ports(size: usize, stiffness: f64) -> Ports {
     let place = size / 2;
     let amplitude = (0..size).map(|i| c64::new(f64::from(u8::from(i == 0)), 0.0)).collect();
     Ports {
-        rows: Mat::from_fn(1, size, |_, j| f64::from(u8::from(j == place))),
-        stiffness: Mat::from_fn(1, 1, |_, _| stiffness),
+        rows: Mat::from_fn(1, size, |_, j| f64::from(u8::from(j == place))).into(),
+        stiffness: Mat::from_fn(1, 1, |_, _| stiffness).into(),
         loads: vec![HarmonicLoad { harmonic: 1, amplitude }],
     }
 }
@@ -193,7 +193,7 @@ fn negative_damping_of_a_law_keeps_the_modes() {
         let direct = DirectCompliance::new(&summed, &ports).unwrap();
         let omega = 1.01 * direct.stuck_frequencies()[0];
         let (mut found, mut wanted) = (Receptance::default(), Receptance::default());
-        family.at(0.05, ports.stiffness.clone()).receptance(1, omega, &mut found).unwrap();
+        family.at(0.05, Mat::clone(&ports.stiffness)).receptance(1, omega, &mut found).unwrap();
         direct.receptance(1, omega, &mut wanted).unwrap();
         let error = (found.contact[0] - wanted.contact[0]).norm() / wanted.contact[0].norm();
         assert!(error < 1e-8, "{error:.1e}");

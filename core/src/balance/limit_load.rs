@@ -37,7 +37,7 @@ impl Loading<'_> {
             return false;
         }
         // Rigid-body motion has u = G D u.
-        let springs = &self.receptance * self.model.contact_stiffness();
+        let springs = &self.receptance * &**self.model.contact_stiffness();
         let Ok(parts) = (Mat::<f64>::identity(size, size) - springs).svd() else { return false };
         let values = parts.S().column_vector();
         // All of them are rounding where every contact moves with a body that floats.

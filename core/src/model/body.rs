@@ -32,9 +32,9 @@ impl Body {
             }
             Self::Wave { cyclic, next } => {
                 let ports = CyclicPorts {
-                    own: ports.rows.clone(),
+                    own: Mat::clone(&ports.rows),
                     next: Mat::clone(next),
-                    stiffness: ports.stiffness.clone(),
+                    stiffness: Mat::clone(&ports.stiffness),
                     loads: ports.loads.clone(),
                 };
                 Ok((

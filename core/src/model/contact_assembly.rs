@@ -1,8 +1,8 @@
 //! Contacts assembled into the rows and the stiffness of a structure.
 
 use crate::contact::ContactLaw;
+use crate::structure::Matrix;
 use crate::Error;
-use faer::Mat;
 use std::ops::Range;
 
 /// Contacts one after the other, their rows and their stiffness.
@@ -10,20 +10,19 @@ pub(super) struct ContactAssembly {
     pub(super) laws: Vec<Box<dyn ContactLaw>>,
     pub(super) points: Vec<Range<usize>>,
     /// Rows of B, one matrix per part of the structure that they act on.
-    pub(super) rows: [Mat<f64>; 2],
-    pub(super) stiffness: Mat<f64>,
+    pub(super) rows: [Matrix; 2],
+    pub(super) stiffness: Matrix,
 }
 
 impl ContactAssembly {
     pub(super) fn new(
         dofs: usize,
-        contacts: impl Iterator<Item = (Box<dyn ContactLaw>, Vec<Mat<f64>>)>,
+        contacts: impl Iterator<Item = (Box<dyn ContactLaw>, Vec<Matrix>)>,
     ) -> Result<Self, Error> {
         let contacts: Vec<_> = contacts.collect();
         let total: usize = contacts.iter().map(|(law, _)| law.displacements()).sum();
         let whole = contacts.first().is_some_and(|(_, parts)| parts.len() == 1);
-        let mut rows = [Mat::zeros(total, dofs), Mat::zeros(total, if whole { 0 } else { dofs })];
-        let mut stiffness = Mat::zeros(total, total);
+        let mut rows = [Vec::new(), Vec::new()];
         let (mut laws, mut points, mut first) = (Vec::new(), Vec::new(), 0);
         for (index, (law, parts)) in contacts.into_iter().enumerate() {
             let size = law.displacements();
@@ -36,22 +35,32 @@ impl ContactAssembly {
                         format!("{} x {}", part.nrows(), part.ncols()),
                     ));
                 }
-                if (0..size).any(|i| (0..dofs).any(|j| !part[(i, j)].is_finite())) {
+                if part.entries().any(|(_, _, share)| !share.is_finite()) {
                     return Err(Error::value(entry, f64::NAN, "its rows must be finite"));
                 }
-                // They hold few numbers.
-                for j in 0..dofs {
-                    for i in (0..size).filter(|&i| part[(i, j)] != 0.0) {
-                        rows[(first + i, j)] = part[(i, j)];
-                    }
-                }
+                rows.extend(part.entries().map(|(i, j, share)| (first + i, j, share)));
             }
-            let own = law.stiffness();
-            stiffness.get_mut(first..first + size, first..first + size).copy_from(&own);
             points.push(first..first + size);
             laws.push(law);
             first += size;
         }
+        let [own, next] = rows;
+        let rows = [
+            Matrix::of_entries(total, dofs, &own),
+            Matrix::of_entries(total, if whole { 0 } else { dofs }, &next),
+        ];
+        let stiffness = stiffness_of(&laws);
         Ok(Self { laws, points, rows, stiffness })
     }
+}
+
+/// Stiffness D of the points of all laws [N/m]: a block for each.
+pub(crate) fn stiffness_of(laws: &[Box<dyn ContactLaw>]) -> Matrix {
+    let (mut numbers, mut first) = (Vec::new(), 0);
+    for law in laws {
+        let own = Matrix::from(law.stiffness());
+        numbers.extend(own.entries().map(|(i, j, d)| (first + i, first + j, d)));
+        first += law.displacements();
+    }
+    Matrix::of_entries(first, first, &numbers)
 }

@@ -2,7 +2,7 @@
 //! in a parameter of its contacts.
 
 use super::body::Body;
-use super::{Change, Model, ParameterMode, Variation};
+use super::{stiffness_of, Change, Model, ParameterMode, Variation};
 use crate::contact::{ContactLaw, Residual};
 use crate::structure::{FlutterCompliance, HarmonicLoad, Ports};
 use crate::Error;
@@ -157,7 +157,7 @@ impl<'a> FlutterModel<'a> {
     /// A value that a law refuses.
     pub fn at(&self, value: f64) -> Result<Model, Error> {
         let (given, laws) = (self.model, self.laws_at(value)?);
-        let stiffness = given.stiffness_of(&laws);
+        let stiffness = stiffness_of(&laws);
         let ports = Ports {
             rows: given.ports.rows.clone(),
             stiffness: stiffness.clone(),
@@ -168,7 +168,7 @@ impl<'a> FlutterModel<'a> {
             ports: Arc::new(ports),
             laws,
             points: given.points.clone(),
-            compliance: self.compliance.at(self.ratio_at(value), stiffness),
+            compliance: self.compliance.at(self.ratio_at(value), stiffness.into_full()),
             modal_base: self.compliance.name(),
             body: given.body.clone(),
             states: Arc::clone(&given.states),

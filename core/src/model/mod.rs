@@ -20,10 +20,12 @@ pub use variation::{Change, ParameterMode, Variation};
 
 use crate::contact::{Aft, ContactLaw, Parameter, REVERSALS};
 use crate::structure::{
-    Compliance, CyclicStructure, HarmonicLoad, Ports, Ring, RingCoupling, RingSector, Structure,
+    Compliance, CyclicStructure, HarmonicLoad, Matrix, Ports, Ring, RingCoupling, RingSector,
+    Structure,
 };
 use crate::Error;
 use body::Body;
+pub(crate) use contact_assembly::stiffness_of;
 use contact_assembly::ContactAssembly;
 use contact_states::{slip_kinds, States};
 use faer::{c64, Mat};
@@ -36,11 +38,11 @@ const NO_LIMIT: f64 = 1e-13;
 
 /// One contact: its law and the rows of B that give its relative displacements.
 #[derive(Debug)]
-pub struct Contact {
+pub struct Contact<R = Mat<f64>> {
     /// The friction law.
     pub law: Box<dyn ContactLaw>,
-    /// Rows of B, points × N.
-    pub rows: Mat<f64>,
+    /// Rows of B, points × N: a matrix, or a [`Matrix`] of their few numbers.
+    pub rows: R,
 }
 
 /// One contact of a sector: its law and the rows of B on the sector itself and on the next one.
@@ -72,15 +74,15 @@ impl Model {
     /// # Errors
     /// Shapes that do not fit the structure, numbers that are not finite, an eigenvalue iteration
     /// that fails.
-    pub fn new(
+    pub fn new<R: Into<Matrix>>(
         structure: Structure,
-        contacts: Vec<Contact>,
+        contacts: Vec<Contact<R>>,
         loads: Vec<HarmonicLoad>,
     ) -> Result<Self, Error> {
-        let parts = contacts.into_iter().map(|c| (c.law, vec![c.rows]));
+        let parts = contacts.into_iter().map(|c| (c.law, vec![c.rows.into()]));
         let ContactAssembly { laws, points, rows: [rows, _], stiffness } =
             ContactAssembly::new(structure.dofs(), parts)?;
-        let structure = structure.held_by(rows.as_ref(), stiffness.as_ref());
+        let structure = structure.held_by(&rows, &stiffness);
         let ports = Ports { rows, stiffness, loads };
         Self::of(Body::Whole, structure, ports, laws, points)
     }
@@ -94,13 +96,13 @@ impl Model {
         contacts: Vec<SectorContact>,
         loads: Vec<HarmonicLoad>,
     ) -> Result<Self, Error> {
-        let parts = contacts.into_iter().map(|c| (c.law, vec![c.own, c.next]));
+        let parts = contacts.into_iter().map(|c| (c.law, vec![c.own.into(), c.next.into()]));
         let ContactAssembly { laws, points, rows: [own, next], stiffness } =
             ContactAssembly::new(cyclic.dofs(), parts)?;
         let cyclic = cyclic.held_by(own.as_ref(), stiffness.as_ref());
         let structure = cyclic.sector()?;
         let ports = Ports { rows: own, stiffness, loads };
-        let body = Body::Wave { cyclic: Arc::new(cyclic), next: Arc::new(next) };
+        let body = Body::Wave { cyclic: Arc::new(cyclic), next: Arc::new(next.into_full()) };
         Self::of(body, structure, ports, laws, points)
     }
 
@@ -126,15 +128,17 @@ impl Model {
         let mut parts = Vec::with_capacity(count);
         let (mut laws, mut points) = (Vec::new(), Vec::new());
         for ((structure, contacts), loads) in structures.into_iter().zip(contacts).zip(loads) {
-            let rows = contacts.into_iter().map(|c| (c.law, vec![c.own, c.next]));
+            let rows = contacts.into_iter().map(|c| (c.law, vec![c.own.into(), c.next.into()]));
             let own = ContactAssembly::new(structure.dofs(), rows)?;
             let first = points.last().map_or(0, |last: &Range<usize>| last.end);
             points.extend(own.points.iter().map(|r| first + r.start..first + r.end));
             laws.extend(own.laws);
             let [own_rows, next] = own.rows;
             let stiffness = own.stiffness;
-            let structure = structure.held_by(own_rows.as_ref(), stiffness.as_ref());
-            parts.push(RingSector { structure, own: own_rows, next, stiffness, loads });
+            let structure = structure.held_by(&own_rows, &stiffness);
+            let (own, next, stiffness) =
+                (own_rows.into_full(), next.into_full(), stiffness.into_full());
+            parts.push(RingSector { structure, own, next, stiffness, loads });
         }
         let ring = Arc::new(Ring::new(parts, coupling)?);
         let (structure, ports) = ring.assembled()?;
@@ -194,7 +198,7 @@ impl Model {
         if expected != got {
             return Err(Error::shape("laws", format!("{expected:?} points"), format!("{got:?}")));
         }
-        let stiffness = self.stiffness_of(&laws);
+        let stiffness = stiffness_of(&laws);
         let (structure, points) = (Arc::clone(&self.structure), self.points.clone());
         let (mut ports, mut compliance) = (Arc::clone(&self.ports), Arc::clone(&self.compliance));
         let (mut modal_base, body) = (self.modal_base, self.body.clone());
@@ -209,15 +213,6 @@ impl Model {
             states = Arc::new(States::of(&body, structure.dofs()));
         }
         Ok(Self { structure, ports, laws, points, compliance, modal_base, body, states })
-    }
-
-    /// Stiffness D of all points under other laws [N/m].
-    pub(crate) fn stiffness_of(&self, laws: &[Box<dyn ContactLaw>]) -> Mat<f64> {
-        let mut stiffness = self.ports.stiffness.clone();
-        for (law, range) in laws.iter().zip(&self.points) {
-            stiffness.get_mut(range.clone(), range.clone()).copy_from(&law.stiffness());
-        }
-        stiffness
     }
 
     /// Whether this is one sector of a disk in a travelling wave.
@@ -280,7 +275,7 @@ impl Model {
 
     /// Contact stiffness D of all points [N/m].
     #[must_use]
-    pub fn contact_stiffness(&self) -> &Mat<f64> {
+    pub fn contact_stiffness(&self) -> &Matrix {
         &self.ports.stiffness
     }
 

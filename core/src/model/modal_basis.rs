@@ -203,7 +203,7 @@ impl Model {
         // Real modes keep their digits and their price.
         let structure = &self.structure;
         let rows = self.ports.rows.as_ref();
-        let restrained = structure.restrained_stiffness(rows, self.ports.stiffness.as_ref());
+        let restrained = structure.restrained_stiffness(&self.ports.rows, &self.ports.stiffness);
         let modes = crate::structure::modes(structure.mass(), restrained.as_ref())?;
         let modes = Modes {
             shapes: crate::structure::complex(modes.shapes.as_ref()),

@@ -181,7 +181,7 @@ impl Model {
             for (slips, share) in parts {
                 let (stick, stiffness) = self.condensed_stiffness(slips)?;
                 let kept = Mat::from_fn(stick.len(), all.ncols(), |i, j| all[(stick[i], j)]);
-                let part = structure.restrained_stiffness(kept.as_ref(), stiffness.as_ref());
+                let part = structure.restrained_stiffness(&kept.into(), &stiffness.into());
                 restrained += faer::Scale(share) * part;
             }
             let matrices = [structure.mass(), structure.damping(), restrained.as_ref()];

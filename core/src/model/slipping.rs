@@ -17,7 +17,7 @@ impl Model {
     pub fn natural_frequencies(&self, slipping: &[(usize, usize)]) -> Result<Vec<f64>, Error> {
         let (stick, stiffness) = self.partition(slipping)?;
         let rows = picked(&self.ports.rows, &stick);
-        let restrained = self.structure.restrained_stiffness(rows.as_ref(), stiffness.as_ref());
+        let restrained = self.structure.restrained_stiffness(&rows.into(), &stiffness.into());
         natural_frequencies(self.structure.mass(), restrained.as_ref())
     }
 

@@ -74,7 +74,7 @@ impl ModalSystem {
         let modes = modes(structure.mass(), structure.stiffness())?;
         let damping = modes.damping(structure.damping());
         let size = modes.omega_squared.len();
-        let rows = &model.ports().rows * &modes.shapes;
+        let rows = &*model.ports().rows * &modes.shapes;
         let contacts = bodies
             .components
             .iter()

@@ -6,8 +6,8 @@ use crate::structure::ModalDamping;
 /// Rates at which the DOFs move while all others are fixed [1/s].
 pub(super) fn dof_rates(model: &Model) -> Vec<f64> {
     let structure = model.structure();
-    let rows = &model.ports().rows;
-    let held = rows.transpose() * model.contact_stiffness() * rows;
+    let rows = &*model.ports().rows;
+    let held = rows.transpose() * &**model.contact_stiffness() * rows;
     let rate = |dof: usize| {
         let mass = structure.mass()[(dof, dof)];
         let stiffness = structure.stiffness()[(dof, dof)] + held[(dof, dof)];

@@ -87,7 +87,7 @@ impl PeriodMap {
             return Err(Error::TravellingWave);
         }
         let (structure, ports) = (model.structure(), model.ports());
-        let held = ports.rows.transpose() * &ports.stiffness * &ports.rows;
+        let held = ports.rows.transpose() * &*ports.stiffness * &*ports.rows;
         let stiffness = structure.stiffness() + held;
         let modes = modes(structure.mass(), stiffness.as_ref())?;
         let damping = modes.damping(damping);
@@ -95,7 +95,7 @@ impl PeriodMap {
         let full = damping.matrix();
         let coupled =
             (!damping.is_diagonal()).then(|| Mat::from_fn(size, size, |i, j| full[(i, j)].re));
-        let shapes = &ports.rows * &modes.shapes;
+        let shapes = &*ports.rows * &modes.shapes;
         let mut parts = Vec::new();
         let mut states = 0;
         for (law, points) in model.laws().iter().zip(model.points()) {

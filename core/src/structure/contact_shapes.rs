@@ -1,5 +1,6 @@
 //! What coordinates displace at contacts, and what loads on contacts are on coordinates.
 
+use super::matrix::Matrix;
 use faer::linalg::matmul::matmul;
 use faer::traits::RealField;
 use faer::{Accum, Mat, MatRef, Par};
@@ -52,15 +53,9 @@ impl ContactShapes {
 }
 
 impl SparseRows {
-    pub(super) fn of(rows: MatRef<'_, f64>) -> Self {
+    pub(super) fn of(rows: &Matrix) -> Self {
         let mut entries = vec![Vec::new(); rows.nrows()];
-        for (dof, column) in rows.col_iter().enumerate() {
-            for (row, share) in entries.iter_mut().zip(column.iter()) {
-                if *share != 0.0 {
-                    row.push((dof, *share));
-                }
-            }
-        }
+        rows.entries().for_each(|(row, dof, share)| entries[row].push((dof, share)));
         Self { entries, dofs: rows.ncols() }
     }
 

@@ -107,7 +107,8 @@ impl CyclicStructure {
     /// The same structure with substitutes for masses that are none, held by these contacts of a sector.
     #[must_use]
     pub(crate) fn held_by(mut self, own: MatRef<'_, f64>, stiffness: MatRef<'_, f64>) -> Self {
-        self.massless = without_mass(self.mass.own.as_ref());
+        let diagonal: Vec<f64> = (0..self.dofs()).map(|i| self.mass.own[(i, i)]).collect();
+        self.massless = without_mass(&diagonal);
         let held = &self.stiffness.own + own.transpose() * stiffness * own;
         let held: Vec<f64> = (0..self.dofs()).map(|i| held[(i, i)]).collect();
         if !self.massless.is_empty() {
@@ -255,8 +256,8 @@ impl CyclicCompliance {
                 .with_law(structure.proportional)
                 .with_massless(structure.massless.clone());
             let ports = Ports {
-                rows: &self.ports.own + faer::Scale(sign) * &self.ports.next,
-                stiffness: self.ports.stiffness.clone(),
+                rows: (&self.ports.own + faer::Scale(sign) * &self.ports.next).into(),
+                stiffness: self.ports.stiffness.clone().into(),
                 loads: self.loads_at(diameter),
             };
             return Ok(compliance(&whole, &ports)?.0);

@@ -29,8 +29,7 @@ impl DirectCompliance {
     /// Shapes that do not fit, or an eigenvalue iteration that fails.
     pub fn new(structure: &Structure, ports: &Ports) -> Result<Self, Error> {
         ports.check(structure.dofs())?;
-        let restrained =
-            structure.restrained_stiffness(ports.rows.as_ref(), ports.stiffness.as_ref());
+        let restrained = structure.restrained_stiffness(&ports.rows, &ports.stiffness);
         let direct = Self::of(structure, ports, restrained.as_ref());
         let stuck = structure.modes_at(restrained)?.modes.frequencies();
         let free = modes(structure.mass(), structure.stiffness())?.frequencies();

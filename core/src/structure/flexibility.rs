@@ -39,7 +39,7 @@ impl Flexibility {
         Some(Self {
             of_contacts: flexibility(ports.rows.transpose()),
             of_load: flexibility(static_load.as_ref()),
-            rows: ports.rows.clone(),
+            rows: Mat::clone(&ports.rows),
         })
     }
 

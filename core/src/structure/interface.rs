@@ -43,8 +43,7 @@ impl InterfaceCompliance {
         if contacts < if uncoupled { ContactModes::FEWEST } else { MANY } {
             return Ok(None);
         }
-        let restrained =
-            structure.restrained_stiffness(ports.rows.as_ref(), ports.stiffness.as_ref());
+        let restrained = structure.restrained_stiffness(&ports.rows, &ports.stiffness);
         let stuck = structure.modes_at(restrained)?;
         let seen = if uncoupled {
             let rate = damping[(0, 0)] / mass[(0, 0)];
@@ -201,7 +200,7 @@ mod tests {
         let damping = faer::Scale(0.1) * &mass;
         let structure = Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref());
         let (rows, held) = (mass.clone(), faer::Scale(3.0) * &mass);
-        let ports = Ports { rows, stiffness: held, loads: Vec::new() };
+        let ports = Ports { rows: rows.into(), stiffness: held.into(), loads: Vec::new() };
         let compliance = InterfaceCompliance::new(&structure.unwrap(), &ports).unwrap().unwrap();
         let [stuck, free] = compliance.lowest_frequencies().unwrap();
         assert!((stuck * stuck - free * free - 3.0).abs() < 1e-5);

@@ -19,10 +19,10 @@ const FASTER: f64 = 1e3;
 /// Least pivot, over the stiffness, of degrees of freedom that something holds.
 const HELD: f64 = 1e-12;
 
-/// The degrees of freedom without mass.
-pub(super) fn without_mass(mass: MatRef<'_, f64>) -> Vec<usize> {
-    let largest = (0..mass.nrows()).map(|i| mass[(i, i)]).fold(0.0, f64::max);
-    (0..mass.nrows()).filter(|&i| mass[(i, i)] <= NONE * largest).collect()
+/// The degrees of freedom without mass, from the diagonal of the mass matrix.
+pub(super) fn without_mass(diagonal: &[f64]) -> Vec<usize> {
+    let largest = diagonal.iter().copied().fold(0.0, f64::max);
+    (0..diagonal.len()).filter(|&i| diagonal[i] <= NONE * largest).collect()
 }
 
 /// Gives the degrees of freedom without mass a trace, so that the matrix has a factor.

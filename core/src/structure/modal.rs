@@ -115,8 +115,7 @@ impl ModalCompliance {
     /// Shapes that do not fit, or an eigenvalue iteration that fails.
     pub fn new(structure: &Structure, ports: &Ports) -> Result<Option<Self>, Error> {
         ports.check(structure.dofs())?;
-        let restrained =
-            structure.restrained_stiffness(ports.rows.as_ref(), ports.stiffness.as_ref());
+        let restrained = structure.restrained_stiffness(&ports.rows, &ports.stiffness);
         let (mass, damping) = (structure.mass(), structure.damping());
         let free = modes(mass, structure.stiffness())?;
         let stuck = if restrained.as_ref() == structure.stiffness() {
@@ -130,7 +129,7 @@ impl ModalCompliance {
             statics: complex(stuck.statics.as_ref()),
             free: free.to_hermitian(),
             rows: complex(ports.rows.as_ref()),
-            stiffness: ports.stiffness.clone(),
+            stiffness: Mat::clone(&ports.stiffness),
             loads: ports.loads.clone(),
         };
         let project = |free_modes| if free_modes { &free } else { &stuck.modes }.damping(damping);

@@ -1,7 +1,8 @@
 //! Where loads enter and displacements leave a structure.
 
+use super::Matrix;
 use crate::Error;
-use faer::{c64, Mat};
+use faer::c64;
 
 /// The load `Re P_k exp(ikωt)` on all DOFs.
 #[derive(Debug, Clone)]
@@ -16,9 +17,9 @@ pub struct HarmonicLoad {
 #[derive(Debug, Clone)]
 pub struct Ports {
     /// B, contacts × N: relative contact displacements are `u = B x`.
-    pub rows: Mat<f64>,
+    pub rows: Matrix,
     /// Contact stiffness D of the stuck contacts, contacts × contacts [N/m].
-    pub stiffness: Mat<f64>,
+    pub stiffness: Matrix,
     /// External loads, one entry per harmonic.
     pub loads: Vec<HarmonicLoad>,
 }

@@ -240,7 +240,7 @@ impl Ring {
             part.structure.massless().iter().map(move |dof| index * dofs + dof)
         });
         let structure = structure.with_massless(massless.collect());
-        Ok((structure, Ports { rows, stiffness: of_contacts, loads }))
+        Ok((structure, Ports { rows: rows.into(), stiffness: of_contacts.into(), loads }))
     }
 
     /// Natural frequencies of the disk, stuck and free.
@@ -249,8 +249,7 @@ impl Ring {
             let frequencies = |stuck: bool| -> Result<Vec<f64>, Error> {
                 let (structure, ports) = self.assembled()?;
                 let stiffness = if stuck {
-                    let rows = ports.rows.as_ref();
-                    structure.restrained_stiffness(rows, ports.stiffness.as_ref())
+                    structure.restrained_stiffness(&ports.rows, &ports.stiffness)
                 } else {
                     structure.stiffness().to_owned()
                 };
@@ -300,6 +299,6 @@ fn isolated(
             0.0
         }
     });
-    let ports = Ports { rows, stiffness, loads: part.loads.clone() };
+    let ports = Ports { rows: rows.into(), stiffness: stiffness.into(), loads: part.loads.clone() };
     Ok(compliance(&structure, &ports)?.0)
 }

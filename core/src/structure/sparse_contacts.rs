@@ -55,15 +55,15 @@ impl SparseContacts {
     /// Of a damped structure with many contacts and few numbers; nothing for others.
     pub(super) fn new(structure: &Structure, ports: &Ports) -> Option<Self> {
         let contacts = ports.rows.nrows();
-        let damped = structure.damping().norm_max() > 0.0;
+        let [mass, damping, free] = structure.matrices();
+        let damped = damping.entries().any(|(_, _, c)| c != 0.0);
         if contacts < FEWEST || !damped || !structure.massless().is_empty() {
             return None;
         }
-        let restrained =
-            structure.restrained_stiffness(ports.rows.as_ref(), ports.stiffness.as_ref());
-        let matrices = [structure.mass(), structure.damping(), restrained.as_ref()];
-        let places = pattern(&matrices)?;
-        let [mass, damping, stiffness] = matrices.map(|matrix| at(&places, matrix));
+        let restrained = structure.restrained_few(&ports.rows, &ports.stiffness)?;
+        let places = pattern(&[mass, damping, &restrained])?;
+        let [mass, damping, stiffness] =
+            [mass, damping, &restrained].map(|matrix| at(&places, matrix));
         let (mass, damping, stiffness) = (mass?, damping?, stiffness?);
         let fill = fill(&stiffness)?;
         if fill as f64 > WORTH * contacts as f64 * structure.dofs() as f64 {
@@ -82,8 +82,8 @@ impl SparseContacts {
         }
         let factors = SymbolicLu::try_new(stiffness.symbolic()).ok()?;
         let mut own = Self {
-            rows: SparseRows::of(ports.rows.as_ref()),
-            free: at(&places, structure.stiffness())?,
+            rows: SparseRows::of(&ports.rows),
+            free: at(&places, free)?,
             loads: ports.loads.clone(),
             lowest: [0.0; 2],
             lowest_free: 0.0,

@@ -2,8 +2,10 @@
 
 use super::contact_shapes::SparseRows;
 use super::massless::{substitute, trace, without_mass, StuckModes};
-use super::sparse_matrices::is_positive;
+use super::matrix::Matrix;
+use super::sparse_matrices::{is_positive, Sparse};
 use crate::Error;
+use faer::sparse::Triplet;
 use faer::{Mat, MatRef};
 
 /// Asymmetry, relative to the largest entry, that printed digits may leave in a matrix.
@@ -18,9 +20,9 @@ const MANY: usize = 24;
 /// The matrices of a linear structure; mass and stiffness symmetric, damping any.
 #[derive(Debug, Clone)]
 pub struct Structure {
-    mass: Mat<f64>,
-    damping: Mat<f64>,
-    stiffness: Mat<f64>,
+    mass: Matrix,
+    damping: Matrix,
+    stiffness: Matrix,
     proportional: bool,
     /// DOFs without mass, which have a substitute in the matrix.
     massless: Vec<usize>,
@@ -45,10 +47,11 @@ impl Structure {
     /// # Errors
     /// As [`Structure::new`].
     pub fn of(
-        mut mass: Mat<f64>,
-        damping: Mat<f64>,
-        mut stiffness: Mat<f64>,
+        mass: impl Into<Matrix>,
+        damping: impl Into<Matrix>,
+        stiffness: impl Into<Matrix>,
     ) -> Result<Self, Error> {
+        let (mass, damping, stiffness) = (mass.into(), damping.into(), stiffness.into());
         let size = mass.nrows();
         for (entry, matrix) in [("mass", &mass), ("damping", &damping), ("stiffness", &stiffness)] {
             if (matrix.nrows(), matrix.ncols()) != (size, size) || size == 0 {
@@ -58,23 +61,20 @@ impl Structure {
                     format!("{} x {}", matrix.nrows(), matrix.ncols()),
                 ));
             }
-            for j in 0..size {
-                for i in 0..size {
-                    if !matrix[(i, j)].is_finite() {
-                        return Err(Error::value(
-                            format!("{entry}[{i}, {j}]"),
-                            matrix[(i, j)],
-                            "every entry must be finite",
-                        ));
-                    }
-                }
+            if let Some((i, j, x)) = matrix.entries().find(|(_, _, x)| !x.is_finite()) {
+                let remedy = "every entry must be finite";
+                return Err(Error::value(format!("{entry}[{i}, {j}]"), x, remedy));
             }
         }
-        let massless = without_mass(mass.as_ref());
-        symmetrise("mass", &mut mass)?;
-        symmetrise("stiffness", &mut stiffness)?;
-        trace(&mut mass, &massless);
-        if !is_positive(mass.as_ref()) {
+        let massless = without_mass(&(0..size).map(|i| mass[(i, i)]).collect::<Vec<_>>());
+        let mut mass = symmetric("mass", mass)?;
+        let stiffness = symmetric("stiffness", stiffness)?;
+        if !massless.is_empty() {
+            let mut full = mass.into_full();
+            trace(&mut full, &massless);
+            mass = full.into();
+        }
+        if !is_positive(&mass) {
             return Err(Error::IndefiniteMass);
         }
         Ok(Self { mass, damping, stiffness, proportional: false, massless })
@@ -91,15 +91,13 @@ impl Structure {
     /// The same structure, held by the contacts of these rows, with substitutes for masses that are none:
     /// what moves in time needs some.
     #[must_use]
-    pub(crate) fn held_by(
-        mut self,
-        rows: MatRef<'_, f64>,
-        contact_stiffness: MatRef<'_, f64>,
-    ) -> Self {
+    pub(crate) fn held_by(mut self, rows: &Matrix, contact_stiffness: &Matrix) -> Self {
         if !self.massless.is_empty() {
             let restrained = self.restrained_stiffness(rows, contact_stiffness);
             let own: Vec<f64> = (0..self.dofs()).map(|i| restrained[(i, i)]).collect();
-            substitute(&mut self.mass, &self.massless, &own);
+            let mut mass = self.mass.into_full();
+            substitute(&mut mass, &self.massless, &own);
+            self.mass = mass.into();
         }
         self
     }
@@ -119,13 +117,18 @@ impl Structure {
     /// Mass matrix without substitutes \[kg\].
     pub(super) fn true_mass(&self) -> Mat<f64> {
         let own = |i: usize| !self.massless.contains(&i);
-        Mat::from_fn(self.dofs(), self.dofs(), |i, j| {
-            if own(i) && own(j) {
-                self.mass[(i, j)]
-            } else {
-                0.0
-            }
-        })
+        let mass = self.mass();
+        Mat::from_fn(
+            self.dofs(),
+            self.dofs(),
+            |i, j| {
+                if own(i) && own(j) {
+                    mass[(i, j)]
+                } else {
+                    0.0
+                }
+            },
+        )
     }
 
     /// Modes with another stiffness, such as that of the stuck structure.
@@ -179,9 +182,7 @@ impl Structure {
 
     /// Whether damping takes energy from every motion.
     pub(crate) fn is_damped(&self) -> bool {
-        let (size, c) = (self.dofs(), &self.damping);
-        let even = Mat::from_fn(size, size, |i, j| 0.5 * (c[(i, j)] + c[(j, i)]));
-        is_positive(even.as_ref())
+        is_positive(&even(self.damping.clone()))
     }
 
     /// Stiffness matrix [N/m], contacts not included.
@@ -192,44 +193,86 @@ impl Structure {
 
     /// Stiffness with contacts stuck: `K + Bᵀ D B`.
     #[must_use]
-    pub fn restrained_stiffness(
-        &self,
-        rows: MatRef<'_, f64>,
-        contact_stiffness: MatRef<'_, f64>,
-    ) -> Mat<f64> {
+    pub fn restrained_stiffness(&self, rows: &Matrix, contact_stiffness: &Matrix) -> Mat<f64> {
         if rows.nrows() < MANY {
-            return &self.stiffness + rows.transpose() * contact_stiffness * rows;
+            return &*self.stiffness + rows.transpose() * &**contact_stiffness * &**rows;
         }
-        // Rows of many contacts hold few numbers each, and a contact knows few others.
-        let SparseRows { entries, .. } = SparseRows::of(rows);
-        let mut restrained = self.stiffness.clone();
-        for (j, column) in contact_stiffness.col_iter().enumerate() {
-            for (i, d) in column.iter().enumerate().filter(|(_, d)| **d != 0.0) {
-                for &(l, right) in &entries[j] {
-                    entries[i].iter().for_each(|&(k, left)| restrained[(k, l)] += left * d * right);
-                }
-            }
+        let mut restrained = Mat::clone(&self.stiffness);
+        for (i, j, k) in added(rows, contact_stiffness) {
+            restrained[(i, j)] += k;
         }
         restrained
     }
+
+    /// The same by its numbers, if these are few.
+    pub(super) fn restrained_few(
+        &self,
+        rows: &Matrix,
+        contact_stiffness: &Matrix,
+    ) -> Option<Matrix> {
+        let own = self.stiffness.few()?.triplet_iter();
+        let mut numbers: Vec<_> = own.map(|one| Triplet::new(one.row, one.col, *one.val)).collect();
+        let added = added(rows, contact_stiffness);
+        numbers.extend(added.into_iter().map(|(i, j, k)| Triplet::new(i, j, k)));
+        // Numbers of one place add up.
+        let few = Sparse::try_new_from_triplets(self.dofs(), self.dofs(), &numbers).ok()?;
+        Some(Matrix::of_few(few))
+    }
+
+    /// Mass, damping and stiffness by their numbers.
+    pub(super) fn matrices(&self) -> [&Matrix; 3] {
+        [&self.mass, &self.damping, &self.stiffness]
+    }
 }
 
-/// Averages out rounded digits, a tile at a time: far columns lie apart in memory.
-fn symmetrise(entry: &str, matrix: &mut Mat<f64>) -> Result<(), Error> {
-    let largest = matrix.norm_max();
-    for (i, j) in tiles(matrix.nrows()) {
-        let (one, other) = (matrix[(i, j)], matrix[(j, i)]);
-        if (one - other).abs() > ASYMMETRY * largest {
+/// What stuck contacts add to the stiffness, number by number: rows of many contacts hold few of them, and a
+/// contact knows few others.
+fn added(rows: &Matrix, contact_stiffness: &Matrix) -> Vec<(usize, usize, f64)> {
+    let SparseRows { entries, .. } = SparseRows::of(rows);
+    let mut numbers = Vec::new();
+    for (i, j, d) in contact_stiffness.entries() {
+        for &(l, right) in &entries[j] {
+            numbers.extend(entries[i].iter().map(|&(k, left)| (k, l, left * d * right)));
+        }
+    }
+    numbers
+}
+
+/// Averages out rounded digits.
+fn symmetric(entry: &str, matrix: Matrix) -> Result<Matrix, Error> {
+    let largest = matrix.entries().map(|(_, _, x)| x.abs()).fold(0.0, f64::max);
+    for (i, j, one) in matrix.entries() {
+        let apart = (one - matrix[(j, i)]).abs();
+        if apart > ASYMMETRY * largest {
             return Err(Error::value(
                 format!("{entry}[{i}, {j}] - {entry}[{j}, {i}]"),
-                (one - other).abs(),
+                apart,
                 "the matrix must be symmetric",
             ));
         }
-        let mean = 0.5 * (one + other);
+    }
+    Ok(even(matrix))
+}
+
+/// The symmetric part of a matrix.
+fn even(matrix: Matrix) -> Matrix {
+    if let Some(few) = matrix.few() {
+        let halves = few.triplet_iter().flat_map(|one| {
+            let half = 0.5 * one.val;
+            [Triplet::new(one.row, one.col, half), Triplet::new(one.col, one.row, half)]
+        });
+        let (size, halves) = (matrix.nrows(), halves.collect::<Vec<_>>());
+        if let Ok(few) = Sparse::try_new_from_triplets(size, size, &halves) {
+            return Matrix::of_few(few);
+        }
+    }
+    // A tile at a time: far columns lie apart in memory.
+    let mut matrix = matrix.into_full();
+    for (i, j) in tiles(matrix.nrows()) {
+        let mean = 0.5 * (matrix[(i, j)] + matrix[(j, i)]);
         (matrix[(i, j)], matrix[(j, i)]) = (mean, mean);
     }
-    Ok(())
+    matrix.into()
 }
 
 /// Places above the diagonal, tile by tile.

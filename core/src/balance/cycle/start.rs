@@ -8,7 +8,7 @@ use super::balance::CycleBalance;
 use super::rest::Equilibrium;
 use crate::contact::{ContactLaw, Describing};
 use crate::fourier::SampleTable;
-use crate::model::FlutterModel;
+use crate::model::{stiffness_of, FlutterModel};
 use crate::solve::{across, at_parameter};
 use crate::structure::StuckMode;
 use crate::Error;
@@ -110,7 +110,7 @@ impl Onset {
     pub fn new(family: &FlutterModel<'_>, mode: usize, value: f64) -> Result<Self, Error> {
         let laws = family.laws_at(value)?;
         let model = family.model();
-        let mut stiffness = model.stiffness_of(&laws);
+        let mut stiffness = stiffness_of(&laws).into_full();
         let limits: Vec<f64> = laws.iter().flat_map(|law| law.onsets()).collect();
         let mut modes = family.compliance().stuck_modes(stiffness.as_ref())?;
         let mut rest = None;
@@ -150,7 +150,7 @@ impl Onset {
         };
         let moved = (0..limits.len()).filter(|&i| own.contact[i].norm() > STILL * largest);
         let onset = if let Some(rest) = &rest {
-            let stuck = model.stiffness_of(&laws).norm_max();
+            let stuck = stiffness_of(&laws).into_full().norm_max();
             let bears = |i: usize| stuck * own.contact[i].norm();
             let most = moved.max_by(|a, b| bears(*a).total_cmp(&bears(*b)));
             most.and_then(|i| Some((rest.reach(family, value, own, bears(i))?, i)))
