@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import cached_property
 
 from stickslip.checks import unknown
 from stickslip.errors import ModelError
@@ -17,9 +18,13 @@ class Dofs:
     def __len__(self) -> int:
         return len(self.dofs)
 
+    @cached_property
+    def _places(self) -> dict[str, int]:
+        return {name: place for place, name in enumerate(self.dofs)}
+
     def index(self, name: str) -> int:
         """Return the position of a degree of freedom, its row in the matrices."""
         try:
-            return self.dofs.index(name)
-        except ValueError:
+            return self._places[name]
+        except (KeyError, TypeError):
             raise ModelError(unknown("dof", name, self.dofs)) from None

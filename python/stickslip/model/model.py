@@ -95,10 +95,11 @@ class Model:
         return {"structure": self.structure, "contacts": self.contacts, "forces": self.forces}
 
     def _require_dofs(self) -> None:
+        known = set(self._contact_dofs)
         for number, contact in enumerate(self.contacts, 1):
             entry = f"contact {number} ({brief(contact.name)})"
             for dof in contact.dofs:
-                if dof is not None and dof not in self._contact_dofs:
+                if dof is not None and dof not in known:
                     raise ModelError(f"{entry}: {self._unknown_dof(dof, contact)}")
         for number, force in enumerate(self.forces, 1):
             if force.dof not in self.structure.dofs:

@@ -256,6 +256,8 @@ def _symmetric(matrix: Matrix, entry: str, names: tuple[str, ...]) -> Matrix:
     """Average out rounded digits, in place; refuse what cannot be rounding."""
     require_square(matrix, entry, len(names))
     require_finite(matrix, entry, names)
+    if np.array_equal(matrix, matrix.T):
+        return matrix
     with np.errstate(over="ignore"):
         difference = matrix - matrix.T
     np.abs(difference, out=difference)
