@@ -157,7 +157,7 @@ mod tests {
         let structure = Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref());
         let rows = Mat::from_fn(contacts, size, |i, j| f64::from(u8::from(j == 2 * i)));
         let held = faer::Scale(3.0) * Mat::<f64>::identity(contacts, contacts);
-        let ports = Ports { rows, stiffness: held, loads: Vec::new() };
+        let ports = Ports { rows: rows.into(), stiffness: held.into(), loads: Vec::new() };
         let compliance = SparseCompliance::new(&structure.unwrap(), &ports).unwrap().unwrap();
         assert!(
             !compliance.is_clear(3, [90.0, 91.0], 1) && compliance.is_clear(3, [90.0, 90.1], 1)
