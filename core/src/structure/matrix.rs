@@ -132,3 +132,33 @@ impl PartialEq for Matrix {
             }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn few_numbers_are_those_of_the_full_matrix() {
+        let size = 200;
+        let entries: Vec<_> = (0..size).map(|i| (i, (7 * i) % size, 1.0 + i as f64)).collect();
+        let few = Matrix::of_entries(size, size, &entries);
+        let mut full = Mat::zeros(size, size);
+        entries.iter().for_each(|&(i, j, x)| full[(i, j)] = x);
+        assert!(few.few().is_some() && few.full.get().is_none());
+        assert!((0..size).all(|i| (0..size).all(|j| few[(i, j)] == full[(i, j)])));
+        // To look at some numbers fills nothing.
+        assert!(few.full.get().is_none());
+        assert_eq!(*few, full);
+        let given = Matrix::from(full.clone());
+        assert!(given.few().is_some() && given == few);
+        assert_eq!(given.into_full(), full);
+        assert_eq!(few.clone().into_full(), full);
+        // One number more than few, and what is small.
+        let most = size * size / 32;
+        let many: Vec<_> = (0..=most).map(|k| (k % size, k / size, 1.0)).collect();
+        assert!(Matrix::of_entries(size, size, &many[..most]).few().is_some());
+        assert!(Matrix::of_entries(size, size, &many).few().is_none());
+        assert!(Matrix::from(Mat::<f64>::identity(20, 20)).few().is_none());
+        assert_eq!(Matrix::of_entries(0, 3, &[]).shape(), (0, 3));
+    }
+}

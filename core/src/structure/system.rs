@@ -303,4 +303,41 @@ mod tests {
             assert_eq!(damped(c), Ok(false));
         }
     }
+
+    #[test]
+    fn a_structure_of_few_numbers_is_that_of_full_matrices() {
+        let size = 120;
+        let chain = |i: usize, j: usize| match i.abs_diff(j) {
+            0 => 2.0 + i as f64,
+            // Printed digits: each side has its own.
+            1 => -1.0 + 1e-12 * i as f64,
+            _ => 0.0,
+        };
+        let stiffness = Mat::from_fn(size, size, chain);
+        let turned = Mat::from_fn(size, size, |i, j| if i + 1 == j { 0.5 } else { 0.0 });
+        let damping = Mat::<f64>::identity(size, size) + &turned - turned.transpose();
+        let of = |matrix: &Mat<f64>| {
+            let numbers: Vec<_> = Matrix::from(matrix.clone()).entries().collect();
+            Matrix::of_entries(size, size, &numbers)
+        };
+        let one = Mat::<f64>::identity(size, size);
+        let few = Structure::of(of(&one), of(&damping), of(&stiffness)).unwrap();
+        let even = Mat::from_fn(size, size, |i, j| 0.5 * (chain(i, j) + chain(j, i)));
+        assert!((few.stiffness() - &even).norm_max() <= f64::EPSILON);
+        assert!(few.is_damped());
+        let rows = Mat::from_fn(40, size, |i, j| match j {
+            _ if j == 3 * i => 1.0,
+            _ if j == 3 * i + 1 => -0.5,
+            _ => 0.0,
+        });
+        let springs = Mat::from_fn(40, 40, |i, j| if i / 2 == j / 2 { 3.0 } else { 0.0 });
+        let whole = &even + rows.transpose() * &springs * &rows;
+        let (rows, springs) = (of(&rows), of(&springs));
+        assert!((few.restrained_stiffness(&rows, &springs) - &whole).norm_max() < 1e-13);
+        let restrained = few.restrained_few(&rows, &springs).unwrap();
+        assert!((&*restrained - &whole).norm_max() < 1e-13);
+        let skew = of(&turned);
+        let wrong = Structure::of(of(&one), of(&damping), skew).map(|_| ());
+        assert!(wrong.is_err_and(|error| error.to_string().contains("must be symmetric")));
+    }
 }
