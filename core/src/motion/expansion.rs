@@ -7,19 +7,17 @@
 use super::branch_series::{BranchSeries, Pass};
 use super::contact_state::ContactState;
 use super::damping::Damping;
+use super::few_modes::FEW;
 use super::microslip::Microslip;
 use super::modal_system::{dot, ModalSystem};
 use super::polynomial::DEGREE;
 use super::power_series::{sum_of_products, PowerSeries, LONGEST_MICROSLIP};
 use super::sliding::{Slide, Swing};
 use super::state::State;
-use pulp::NullaryFnOnce as _;
 
 /// Shortest step where contacts slip little by little, and passes over a step.
 const SHORTEST: f64 = 1e-9;
 const PASSES: usize = 24;
-/// Modes that are not worth a choice of vector instructions.
-const FEW: usize = 8;
 
 impl PowerSeries {
     pub(super) fn set_rate(&mut self, system: &ModalSystem, rate: f64) {
@@ -108,6 +106,9 @@ impl PowerSeries {
             })
             .collect();
         self.connect(system, regime);
+        if self.modes <= FEW && !self.is_nonlinear() {
+            return self.expand_few(system, &mut loads);
+        }
         for first in (0..=DEGREE).step_by(2) {
             self.displace_contacts(system, first);
             for power in first..DEGREE.min(first + 1) + 1 {
@@ -246,9 +247,6 @@ impl PowerSeries {
             damping: &self.damping,
             factors: [share, square, order],
         };
-        if n < FEW {
-            return own.call();
-        }
         pulp::Arch::new().dispatch(own);
     }
 
@@ -281,7 +279,7 @@ impl PowerSeries {
     }
 
     /// Coefficients of the forces that follow displacements, at one power.
-    fn load_contacts(&mut self, power: usize) {
+    pub(super) fn load_contacts(&mut self, power: usize) {
         if power == 0 {
             return;
         }

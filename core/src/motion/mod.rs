@@ -12,6 +12,7 @@ mod damping;
 mod disturbed_stretch;
 mod expansion;
 mod exponential;
+mod few_modes;
 mod flow;
 mod flow_event;
 mod flow_next;

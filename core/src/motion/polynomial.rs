@@ -79,7 +79,12 @@ fn scan(a: &[f64], visit: &mut dyn FnMut(f64) -> bool) {
     if !plain && a.len() <= POINTS {
         let (points, error) = control_points(a);
         let points = &points[..a.len()];
-        if same && points.iter().all(|b| (*b > 0.0) == (ends[0] > 0.0) && b.abs() > error) {
+        // As many zeros as changes of sign, or less by an even number (Descartes).
+        let changes = points.windows(2).filter(|b| (b[0] > 0.0) != (b[1] > 0.0)).count();
+        if changes < 2 && points.iter().all(|b| b.abs() > error) {
+            if changes == 1 {
+                visit(Search { a, bend }.locate([(0.0, ends[0]), (1.0, ends[1])]));
+            }
             return;
         }
         let second = points.windows(3).map(|b| (b[2] - 2.0 * b[1] + b[0]).abs());
@@ -92,16 +97,20 @@ fn scan(a: &[f64], visit: &mut dyn FnMut(f64) -> bool) {
 /// Control points of a polynomial on the unit interval, between which it stays, and their error.
 fn control_points(a: &[f64]) -> ([f64; POINTS], f64) {
     let mut points = [0.0; POINTS];
+    let mut rest = [0.0; POINTS];
+    let rest = &mut rest[..a.len()];
     let degree = a.len().saturating_sub(1);
     let (mut choices, mut sum) = (1.0, 0.0);
-    for (i, (point, a)) in points.iter_mut().zip(a).enumerate() {
-        *point = a / choices;
+    for (i, (rest, a)) in rest.iter_mut().zip(a).enumerate() {
+        *rest = a / choices;
         sum += a.abs();
         choices *= (degree - i) as f64 / (i + 1) as f64;
     }
-    for first in 1..a.len() {
-        for j in (first..a.len()).rev() {
-            points[j] += points[j - 1];
+    for (i, point) in points[..a.len()].iter_mut().enumerate() {
+        *point = rest[0];
+        let rest = &mut rest[..a.len() - i];
+        for next in 1..rest.len() {
+            rest[next - 1] += rest[next];
         }
     }
     (points, OF_POINTS * sum)

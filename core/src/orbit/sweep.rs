@@ -5,8 +5,9 @@ use super::periodic::PeriodicOrbits;
 use super::pieces::pieces;
 use crate::balance::{brent, check_bracket, check_frequencies, over_frequencies, PointStatus};
 use crate::fourier::Measure;
-use crate::motion::State;
+use crate::motion::{ModalSystem, State, Transition};
 use crate::parallel::in_parts;
+use crate::solve::{extrapolated, LOOK_BACK};
 use crate::timing::Profile;
 use crate::Error;
 use std::iter;
@@ -44,6 +45,7 @@ pub fn orbit_sweep(orbits: PeriodicOrbits<'_>, omega: &[f64]) -> Result<Orbits, 
         if plan.unique { pieces(omega.len()) } else { iter::once(0..omega.len()).collect() };
     let found = in_parts(pieces.len(), orbits.progress, |piece, progress| {
         let mut own = plan.clone().orbits(progress);
+        let system = Arc::clone(&plan.system);
         let omega = &omega[pieces[piece].clone()];
         let found = over_frequencies(
             &mut own,
@@ -51,7 +53,8 @@ pub fn orbit_sweep(orbits: PeriodicOrbits<'_>, omega: &[f64]) -> Result<Orbits, 
             kept,
             PeriodicOrbits::report,
             |orbits, points, frequency| {
-                let orbit = orbits.solve(frequency, predict(points, frequency).as_ref())?;
+                let orbit =
+                    orbits.solve(frequency, predict(&system, points, frequency).as_ref())?;
                 Ok(Some(orbit).filter(|orbit| orbit.response.status != PointStatus::NotComputed))
             },
         );
@@ -76,32 +79,21 @@ pub fn orbit_sweep(orbits: PeriodicOrbits<'_>, omega: &[f64]) -> Result<Orbits, 
     })
 }
 
-/// Linear extrapolation from the last two orbits, or the last one; nothing if it is far away.
-fn predict(points: &[Arc<Orbit>], omega: f64) -> Option<State> {
+/// What the last orbits lead to; nothing where the last one is far away.
+fn predict(system: &ModalSystem, points: &[Arc<Orbit>], omega: f64) -> Option<State> {
     let last = points.last()?;
     let start = last.start()?;
     if (omega - last.response.omega).abs() > NEIGHBOUR * omega {
         return None;
     }
-    let mut predicted = start.clone();
-    let before = points.len().checked_sub(2).map(|i| &points[i]);
-    let Some((before, earlier)) = before.and_then(|orbit| Some((orbit, orbit.start()?))) else {
-        return Some(predicted);
-    };
-    let ratio = (omega - last.response.omega) / (last.response.omega - before.response.omega);
-    if !ratio.is_finite() || ratio.abs() > 3.0 {
-        return Some(predicted);
-    }
-    for (values, earlier) in [
-        (&mut predicted.displacement, &earlier.displacement),
-        (&mut predicted.velocity, &earlier.velocity),
-        (&mut predicted.force, &earlier.force),
-    ] {
-        for (value, earlier) in values.iter_mut().zip(earlier) {
-            *value += ratio * (*value - earlier);
-        }
-    }
-    Some(predicted)
+    // In coordinates that are energies, errors of all of them count alike.
+    let coordinates = Transition::new(system, omega);
+    let own =
+        |orbit: &Arc<Orbit>| Some((orbit.response.omega, coordinates.coordinates(orbit.start()?)));
+    let known: Vec<_> = points.iter().rev().take(LOOK_BACK).map_while(own).collect();
+    let (moved, _) = coordinates.state(&extrapolated(&known, omega)?);
+    let State { displacement, velocity, force, .. } = moved;
+    Some(State { displacement, velocity, force, ..start.clone() })
 }
 
 /// Maximises the exact amplitude of one DOF over `[low, high]` [rad/s] from `guess`. Returns the

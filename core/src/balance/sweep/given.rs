@@ -4,6 +4,7 @@ use crate::balance::forced::ForcedBalance;
 use crate::balance::solution::{CurveEnd, Point, PointStatus, Solution};
 use crate::balance::unknowns::Unknowns;
 use crate::balance::{keep, Kept};
+use crate::solve::{extrapolated, LOOK_BACK};
 use crate::timing::Profile;
 use crate::Error;
 use std::sync::Arc;
@@ -102,53 +103,17 @@ pub(super) fn finish(
     }
 }
 
-/// Highest degree of an extrapolation.
-const HIGHEST_DEGREE: usize = 3;
-/// Longest way of an extrapolation by a straight line and of one by a parabola or cubic, in steps
-/// like the last one: far beyond, nothing is predicted.
-const REACH: [f64; 2] = [3.0, 1.5];
-
-/// Polynomial extrapolation from the last points that converged, of the degree that would have
-/// predicted the last one best.
+/// What the last points that converged lead to.
 fn predict(points: &[Arc<Point>], omega: f64) -> Option<Unknowns> {
     let usable = |point: &&Arc<Point>| point.is_solved();
     let last = points.last().filter(usable)?.unknowns.as_ref()?;
     let known: Vec<(f64, Vec<f64>)> = points
         .iter()
         .rev()
-        .take(HIGHEST_DEGREE + 2)
+        .take(LOOK_BACK)
         .take_while(usable)
         .map_while(|p| Some((p.omega, p.unknowns.as_ref()?.recast(&last.harmonics))))
         .collect();
-    let ratio = known
-        .get(1)
-        .map_or(f64::NAN, |before| ((omega - known[0].0) / (known[0].0 - before.0)).abs());
-    // On a repeated frequency there is no line either.
-    if !ratio.is_finite() || ratio > REACH[0] {
-        return Some(last.clone());
-    }
-    let mut predicted = extrapolate(&known[..2], omega);
-    if ratio <= REACH[1] {
-        let mut least = f64::INFINITY;
-        for degree in 1..=HIGHEST_DEGREE.min(known.len().saturating_sub(2)) {
-            let hindsight = extrapolate(&known[1..degree + 2], known[0].0);
-            let missed = hindsight.iter().zip(&known[0].1).map(|(a, b)| (a - b).powi(2)).sum();
-            let candidate = extrapolate(&known[..=degree], omega);
-            if missed < least && candidate.iter().all(|x| x.is_finite()) {
-                (least, predicted) = (missed, candidate);
-            }
-        }
-    }
-    Some(Unknowns { harmonics: last.harmonics.clone(), values: predicted })
-}
-
-/// The polynomial through all of `known` at another frequency (Lagrange).
-fn extrapolate(known: &[(f64, Vec<f64>)], omega: f64) -> Vec<f64> {
-    let mut values = vec![0.0; known.first().map_or(0, |(_, values)| values.len())];
-    for (at, (own, part)) in known.iter().enumerate() {
-        let others = known.iter().enumerate().filter(|(other, _)| *other != at);
-        let weight: f64 = others.map(|(_, (w, _))| (omega - w) / (own - w)).product();
-        values.iter_mut().zip(part).for_each(|(x, p)| *x += weight * p);
-    }
-    values
+    let values = extrapolated(&known, omega)?;
+    Some(Unknowns { harmonics: last.harmonics.clone(), values })
 }
