@@ -14,6 +14,7 @@ use super::polynomial::DEGREE;
 use super::power_series::{sum_of_products, PowerSeries, LONGEST_MICROSLIP};
 use super::sliding::{Slide, Swing};
 use super::state::State;
+use pulp::NullaryFnOnce as _;
 
 /// Shortest step where contacts slip little by little, and passes over a step.
 const SHORTEST: f64 = 1e-9;
@@ -107,8 +108,14 @@ impl PowerSeries {
             .collect();
         self.connect(system, regime);
         if self.modes <= FEW && !self.is_nonlinear() {
-            return self.expand_few(system, &mut loads);
+            self.expand_few(system, &mut loads);
+        } else {
+            self.expand_many(system, &mut loads);
         }
+    }
+
+    /// The coefficients behind those of a state, in a regime that is connected.
+    pub(super) fn expand_many(&mut self, system: &ModalSystem, loads: &mut [(f64, [f64; 2])]) {
         for first in (0..=DEGREE).step_by(2) {
             self.displace_contacts(system, first);
             for power in first..DEGREE.min(first + 1) + 1 {
@@ -126,8 +133,8 @@ impl PowerSeries {
             }
             self.load_modes(system, first);
             for power in [first, first + 1] {
-                self.expand_modes(system, &loads, power);
-                for (frequency, [re, im]) in &mut loads {
+                self.expand_modes(system, loads, power);
+                for (frequency, [re, im]) in &mut *loads {
                     let step = *frequency / (power + 1) as f64;
                     (*re, *im) = (-step * *im, step * *re);
                 }
@@ -177,7 +184,7 @@ impl PowerSeries {
     }
 
     /// The coefficients of a state.
-    fn begin(&mut self, [displacement, velocity, force]: [&[f64]; 3]) {
+    pub(super) fn begin(&mut self, [displacement, velocity, force]: [&[f64]; 3]) {
         let (n, rate) = (self.modes, self.rate);
         self.modal[..n].copy_from_slice(displacement);
         for (c, v) in self.modal[n..2 * n].iter_mut().zip(velocity) {
@@ -247,11 +254,14 @@ impl PowerSeries {
             damping: &self.damping,
             factors: [share, square, order],
         };
+        if n < FEW {
+            return own.call();
+        }
         pulp::Arch::new().dispatch(own);
     }
 
     /// Finds out which forces follow which displacements; all others stay as they are.
-    fn connect(&mut self, system: &ModalSystem, regime: &ContactState) {
+    pub(super) fn connect(&mut self, system: &ModalSystem, regime: &ContactState) {
         self.springs.clear();
         for body in system.bodies() {
             for i in body.points.clone() {

@@ -15,7 +15,7 @@ struct Coupled<const W: usize> {
 }
 
 impl PowerSeries {
-    /// The coefficients behind those of a state, in a regime that is connected.
+    /// As [`PowerSeries::expand_many`], of a linear motion of few modes.
     pub(super) fn expand_few(&mut self, system: &ModalSystem, loads: &mut [(f64, [f64; 2])]) {
         if self.modes <= FEW / 2 {
             self.expand_coupled::<{ FEW / 2 }>(system, loads);
@@ -95,5 +95,92 @@ impl PowerSeries {
 fn subtract<const W: usize>(columns: &[[f64; W]], x: &[f64; W], out: &mut [f64; W]) {
     for (column, x) in columns.iter().zip(x) {
         out.iter_mut().zip(column).for_each(|(out, a)| *out -= a * x);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::{Jenkins, PointState, StructuralDamper};
+    use crate::model::{Contact, Model};
+    use crate::motion::{ContactState, State};
+    use crate::structure::{HarmonicLoad, Structure};
+    use faer::{c64, mat, Mat};
+
+    const OMEGA: f64 = 1.3;
+    /// Of terms that grow to some hundred times their sum.
+    const ROUNDING: f64 = 1e-13;
+
+    /// Masses on springs, three of them joined by a damper and one on an element of its own; damping of any kind.
+    fn model(size: usize, coupled: bool) -> Model {
+        let damping = Mat::from_fn(size, size, |i, j| match i.abs_diff(j) {
+            0 => 0.3 + 0.1 * i as f64,
+            1 if coupled => -0.1,
+            _ => 0.0,
+        });
+        let stiffness = Mat::from_fn(size, size, |i, j| if i == j { 1.0 + i as f64 } else { 0.0 });
+        let mass = Mat::<f64>::identity(size, size);
+        let structure = Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref());
+        let damper = mat![[3.0, -2.4, -0.5], [-2.4, 3.4, -0.8], [-0.5, -0.8, 1.5]];
+        let law = StructuralDamper::new(damper.as_ref(), &[0.2, 0.5, 0.3]).unwrap();
+        let rows =
+            |count, first| Mat::from_fn(count, size, |i, j| f64::from(u8::from(i + first == j)));
+        let contacts = vec![
+            Contact { law: Box::new(law), rows: rows(3, 0) },
+            Contact { law: Box::new(Jenkins::new(2.0, 0.4).unwrap()), rows: rows(1, size - 1) },
+        ];
+        let amplitude = (0..size).map(|i| c64::new(1.0, i as f64)).collect();
+        let loads = vec![HarmonicLoad { harmonic: 3, amplitude }];
+        Model::new(structure.unwrap(), contacts, loads).unwrap()
+    }
+
+    /// In every state of the contacts the coefficients are those that mode after mode and contact after contact give.
+    #[test]
+    fn a_few_modes_together_have_the_coefficients_of_each() {
+        for (size, coupled) in [(3, false), (4, true), (5, true), (8, false)] {
+            let model = model(size, coupled);
+            let system = ModalSystem::new(&model).unwrap();
+            let mut state = State::rest(&system);
+            state.time = 0.4;
+            state
+                .displacement
+                .iter_mut()
+                .enumerate()
+                .for_each(|(j, x)| *x = (j as f64 + 1.0).sin());
+            state.velocity.iter_mut().enumerate().for_each(|(j, v)| *v = (2.0 * j as f64).cos());
+            state.force.copy_from_slice(&[0.1, -0.5, 0.2, 0.4]);
+            for slipping in 0..16 {
+                for (i, point) in state.points.iter_mut().enumerate() {
+                    let slips = slipping >> i & 1 == 1;
+                    *point = if slips { PointState::slipping(1.0) } else { PointState::Stuck };
+                }
+                let regime = ContactState::new(&system, &state.points);
+                let (sin, cos) = (3.0 * OMEGA * state.time).sin_cos();
+                let mut both = [(); 2].map(|()| PowerSeries::new(&system, OMEGA));
+                for (number, own) in both.iter_mut().enumerate() {
+                    let mut loads = [(3.0 * OMEGA / own.rate(), [cos, sin])];
+                    own.begin([&state.displacement, &state.velocity, &state.force]);
+                    own.connect(&system, &regime);
+                    if number == 0 {
+                        own.expand_few(&system, &mut loads);
+                    } else {
+                        own.expand_many(&system, &mut loads);
+                    }
+                }
+                let [few, many] = &both;
+                for (few, many) in [
+                    (&few.modal, &many.modal),
+                    (&few.contact, &many.contact),
+                    (&few.force, &many.force),
+                ] {
+                    let largest = many.iter().fold(0.0_f64, |most, a| most.max(a.abs()));
+                    let off = few.iter().zip(many).map(|(a, b)| (a - b).abs());
+                    let off = off.fold(0.0, f64::max);
+                    assert!(off <= ROUNDING * largest, "{size} {slipping} {off:e}");
+                }
+                let end = DEGREE * size;
+                assert!(many.modal[end..].iter().any(|a| *a != 0.0));
+            }
+        }
     }
 }

@@ -19,7 +19,7 @@ const FAR_BETTER: f64 = 1e-2;
 const WELL: f64 = 1e-3;
 /// Of a balance where one motion alone is possible: the harmonics it lacks count for more than its error. Elsewhere
 /// sliders keep where it leaves them.
-const BALANCED: NewtonSettings = NewtonSettings { tolerance: 1e-6, max_iterations: 100 };
+const BALANCED: NewtonSettings = NewtonSettings { tolerance: 1e-4, max_iterations: 100 };
 
 impl PeriodicOrbits<'_> {
     /// A start, or that of harmonic balance if it is better: where but one motion is possible, and each

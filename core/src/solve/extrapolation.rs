@@ -42,3 +42,32 @@ fn through(known: &[(f64, Vec<f64>)], at: f64) -> Vec<f64> {
     }
     values
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn known(of: impl Fn(f64) -> f64) -> Vec<(f64, Vec<f64>)> {
+        [5.0, 4.0, 3.0, 2.0, 1.0].map(|at| (at, vec![of(at)])).to_vec()
+    }
+
+    #[test]
+    fn smooth_curves_are_continued_and_kinks_are_not_swung_round() {
+        let cubic = |x: f64| x * x * x - 2.0 * x;
+        let next = extrapolated(&known(cubic), 6.0).unwrap();
+        assert!((next[0] - cubic(6.0)).abs() < 1e-9, "{next:?}");
+        // Behind a kink the line through the last two points is right; a cubic through all misses by 4.
+        let kink = |x: f64| (x - 3.0).max(0.0);
+        let next = extrapolated(&known(kink), 6.0).unwrap();
+        assert!((next[0] - kink(6.0)).abs() < 1e-9, "{next:?}");
+    }
+
+    #[test]
+    fn far_away_the_last_point_is_the_best() {
+        let line = known(|x| 2.0 * x);
+        assert_eq!(extrapolated(&line, 8.5).unwrap(), [10.0]);
+        assert_eq!(extrapolated(&line[..1], 6.0).unwrap(), [10.0]);
+        assert_eq!(extrapolated(&[line[0].clone(), line[0].clone()], 6.0).unwrap(), [10.0]);
+        assert!(extrapolated(&[], 6.0).is_none());
+    }
+}
