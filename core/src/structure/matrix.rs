@@ -1,15 +1,17 @@
 //! A real matrix that may hold few numbers.
 
-use super::sparse_matrices::Sparse;
-use faer::sparse::Triplet;
+use faer::sparse::{SparseColMat, Triplet};
 use faer::Mat;
 use std::ops::{Deref, Index};
 use std::sync::OnceLock;
 
+/// A real matrix by its numbers.
+pub(super) type Sparse = SparseColMat<usize, f64>;
+
 /// Size, rows times columns, from which on it is worth to look for few numbers.
 const LARGE: usize = 1 << 10;
 /// Share of the numbers of a matrix up to which it holds few.
-pub(super) const FEW: f64 = 1.0 / 32.0;
+const FEW: f64 = 1.0 / 32.0;
 
 /// A real matrix: by its numbers where a large one holds few, as a full one where it holds many or somebody
 /// asks for all of them.

@@ -5,10 +5,11 @@
 use super::contact_coordinates::ContactCoordinates;
 use super::contact_shapes::{ContactShapes, SparseRows};
 use super::flexibility::RIGID_BODY;
+use super::matrix::Sparse;
 use super::modal_orders::{Inverse, ModalOrders, Order};
 use super::modes::resonates;
 use super::ports::{HarmonicLoad, Ports};
-use super::sparse_matrices::{at, fill, pattern, Sparse};
+use super::sparse_matrices::{at, fill, pattern};
 use super::sparse_spectrum::squared_between;
 use super::Structure;
 use crate::Error;

@@ -1,13 +1,10 @@
 //! Matrices that hold few numbers, such as those of a chain.
 
-use super::matrix::Matrix;
+use super::matrix::{Matrix, Sparse};
 use faer::sparse::linalg::cholesky::factorize_symbolic_cholesky;
 use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
-use faer::sparse::{SparseColMat, Triplet};
+use faer::sparse::Triplet;
 use faer::Side;
-
-/// A real matrix by its numbers.
-pub(super) type Sparse = SparseColMat<usize, f64>;
 
 /// Where any of some square matrices of one size holds a number, and the diagonal, column by column; nothing if
 /// these are many.

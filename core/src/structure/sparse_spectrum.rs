@@ -1,7 +1,7 @@
 //! Natural frequencies inside a band, of matrices that hold few numbers: by Sylvester's law as many
 //! squared frequencies lie below σ as `K − σM` has negative pivots.
 
-use super::sparse_matrices::Sparse;
+use super::matrix::Sparse;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::linalg::cholesky::{
     factorize_symbolic_cholesky, CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw,

@@ -2,8 +2,8 @@
 
 use super::contact_shapes::SparseRows;
 use super::massless::{substitute, trace, without_mass, StuckModes};
-use super::matrix::Matrix;
-use super::sparse_matrices::{is_positive, Sparse};
+use super::matrix::{Matrix, Sparse};
+use super::sparse_matrices::is_positive;
 use crate::Error;
 use faer::sparse::Triplet;
 use faer::{Mat, MatRef};
