@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import os
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
+from threading import local
+from typing import NamedTuple
 
 from stickslip.errors import ModelError
 
@@ -16,6 +19,37 @@ COPIES = 3.2
 
 _PER_POINT = 80
 """Numbers that a point of the core takes beside its own: vectors, their allocation, its status."""
+
+
+class _Family(NamedTuple):
+    """Results that are in the memory together."""
+
+    results: int = 1
+    """All of them."""
+    at_once: int = 1
+    """Those that are computed at the same time."""
+    saved: int = 1
+    """Those that are saved as one."""
+
+
+_OWN = local()
+"""Knows to which family the results of this thread belong."""
+
+
+@contextmanager
+def one_of(results: int, at_once: int, *, together: bool) -> Iterator[None]:
+    """Have an analysis reckon with others whose results are kept beside its own.
+
+    There are so many `results` in all, some of them computed `at_once`, and saved `together` or one
+    after the other; each of them may be a family itself.
+    """
+    before: _Family = getattr(_OWN, "family", _Family())
+    saved = results if together else 1
+    _OWN.family = _Family(before.results * results, before.at_once * at_once, before.saved * saved)
+    try:
+        yield
+    finally:
+        _OWN.family = before
 
 
 def require_memory(
@@ -44,12 +78,19 @@ def require_numbers(numbers: int, what: str, remedy: str, *, core: int | None = 
     It holds `numbers` of eight bytes each, and is made from as many or `core` others; `what` names
     the entry that makes it large, and `remedy` how to need fewer.
     """
+    family: _Family = getattr(_OWN, "family", _Family())
     # What the core has freed may lie in holes between what threads still hold, beside the copies.
-    needed = 8 * ((numbers if core is None else core) + COPIES * numbers)
+    made = family.at_once * (numbers if core is None else core)
+    others = max(family.results - family.at_once - family.saved, 0)
+    needed = 8 * (made + (others + COPIES * family.saved) * numbers)
     there = physical_memory()
     if there is not None and needed > SHARE * there:
+        several = (
+            f", {family.results} times, {family.at_once} at once," if family.results > 1 else ""
+        )
         raise ModelError(
-            f"{what} needs {needed / 1e9:.3g} GB of the {there / 1e9:.3g} GB of memory; {remedy}"
+            f"{what}{several} needs {needed / 1e9:.3g} GB of the {there / 1e9:.3g} GB of memory; "
+            f"{remedy}"
         )
 
 

@@ -154,3 +154,24 @@ def test_ctrl_c_keeps_the_levels_that_are_complete(
     if isinstance(caught.value, ss.Interrupted):
         part = caught.value.result
         assert part.interrupted == (part.omega.size < 60000)
+
+
+@pytest.mark.parametrize(
+    ("study", "told"), [(LEVELS, "5 times, 2 at once,"), (SWEEP, "4 times, 2 at once,")]
+)
+def test_results_kept_together_are_reckoned_together(
+    monkeypatch: pytest.MonkeyPatch, study: str, told: str
+) -> None:
+    """Each of them alone has room enough."""
+    threads(monkeypatch, 2)
+    monkeypatch.setattr("stickslip.memory.physical_memory", lambda: 10**6)
+    many = "{ from = 50, to = 300, points = 150 }"
+    study = study.replace("SPAN", many).replace("[80, 90, 100]", many)
+    one = study.replace("[0.5, 1, 2, 4, 8]", "[1]").replace("[0.5, 1.0, 2.0, 4.0]", "[1.0]")
+    (alone,) = read(one).run()
+    assert alone is not None
+    with pytest.raises(ss.ModelError, match=f"{told} needs .* GB of the 0.001 GB of memory"):
+        next(iter(read(study).run()))
+    # What comes after them is not one of them.
+    (again,) = read(one).run()
+    assert again is not None

@@ -18,7 +18,7 @@ from stickslip.analyses.run import Progress, share
 from stickslip.model import Model
 from stickslip.model.contact_law import ContactLaw
 
-__all__ = ["has_own_laws", "in_turn"]
+__all__ = ["at_once", "has_own_laws", "in_turn"]
 
 _Kind = TypeVar("_Kind")
 
@@ -50,8 +50,8 @@ def in_turn(
         Behind the last part that was complete; or what the part raises that was not.
     """
     count = len(parts)
-    threads = min(_processors(), count)
-    if alone or threads <= 1 or getattr(_WITHIN, "part", False):
+    threads = at_once(count, alone=alone)
+    if threads <= 1:
         for number, part in enumerate(parts):
             yield part(share(progress, number / count, (number + 1) / count))
             if progress is not None:
@@ -87,6 +87,11 @@ def in_turn(
     finally:
         ended.set()
         pool.shutdown(cancel_futures=True)
+
+
+def at_once(count: int, *, alone: bool = False) -> int:
+    """Return how many of so many parts `in_turn` works on at the same time."""
+    return 1 if alone or getattr(_WITHIN, "part", False) else min(_processors(), count)
 
 
 def has_own_laws(model: Model) -> bool:

@@ -11,11 +11,12 @@ import numpy as np
 
 from stickslip.analyses.campbell import model_at, require_models
 from stickslip.analyses.run import Progress
-from stickslip.analyses.side_by_side import in_turn
+from stickslip.analyses.side_by_side import at_once, in_turn
 from stickslip.analyses.variation import variation_of
 from stickslip.checks import brief
 from stickslip.disk import BladedDisk, MistunedDisk
 from stickslip.errors import Interrupted, ModelError
+from stickslip.memory import one_of
 from stickslip.model import Model
 from stickslip.results.result import Result
 from stickslip.results.sweep import Sweep
@@ -80,10 +81,13 @@ def swept(
     """Return the results along the parameter of some keys, `alone` one after the other."""
     kept, at = _family(models, keys)
     results: list[Result] = []
+    count = len(kept.values)
+    threads = at_once(count, alone=alone)
 
     def result_at(value: float, part: Progress) -> Result:
         try:
-            return compute(at(value), part)
+            with one_of(count, threads, together=True):
+                return compute(at(value), part)
         except ModelError as error:
             where = f"{kept.parameter} = {value:.6g}"
             raise ModelError(f"{where}: {error}", study=f"{where}: {error.study}") from None

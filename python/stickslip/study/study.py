@@ -11,10 +11,11 @@ from functools import partial
 from pathlib import Path
 
 from stickslip.analyses.run import Progress
-from stickslip.analyses.side_by_side import in_turn
+from stickslip.analyses.side_by_side import at_once, in_turn
 from stickslip.analyses.sweep import swept
 from stickslip.checks import brief, file_path, is_file, is_reserved, vanished
 from stickslip.errors import ModelError
+from stickslip.memory import one_of
 from stickslip.model import Model
 from stickslip.model.notable import notable_dofs, physical_dofs
 from stickslip.results.result import Result
@@ -184,12 +185,14 @@ class Study:
             Ctrl-C; carries the part of the current curve that was done.
         """
         shown = self.tables.output.dofs or ()
+        cases = self.cases
+        threads = at_once(len(cases), alone=self._has_threads)
 
         def result_of(case: Case, part: Progress) -> Result:
-            with named(self.source):
+            with named(self.source), one_of(len(cases), threads, together=False):
                 return self._result(case, part, shown)
 
-        parts = [partial(result_of, case) for case in self.cases]
+        parts = [partial(result_of, case) for case in cases]
         yield from in_turn(parts, progress, alone=self._has_threads)
 
     @property
