@@ -10,7 +10,7 @@ use numpy::PyArray2;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::sync::Arc;
-use stickslip_core::balance::{in_order, Settings};
+use stickslip_core::balance::{without_gap, Settings};
 use stickslip_core::design::bound_orbits;
 use stickslip_core::fourier::Measure;
 use stickslip_core::motion::{transient, Scheme, TransientSettings};
@@ -59,7 +59,7 @@ pub fn exact_response<'py>(
             Ok(found)
         },
         |mut points| {
-            in_order(&mut points, &order, |orbit| orbit.response.omega);
+            without_gap(&mut points, &order, |orbit| orbit.response.omega);
             let half_wave = model.is_symmetric() && settings.residual.is_symmetric();
             let profile = Profile::default();
             (!points.is_empty()).then_some(Orbits { points, half_wave, interrupted: true, profile })

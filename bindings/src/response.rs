@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 use std::mem::take;
 use std::sync::Arc;
 use stickslip_core::balance::{
-    self, in_order, sweep, CurveEnd, ForcedBalance, HarmonicChoice, Kept, Point, PointStatus,
+    self, sweep, without_gap, CurveEnd, ForcedBalance, HarmonicChoice, Kept, Point, PointStatus,
     Progress, Settings, HIGHEST_ORDER,
 };
 use stickslip_core::design::bound;
@@ -71,11 +71,8 @@ fn swept<'py>(
         progress,
         move |kept, look| work(&own, kept, look),
         |mut points: Vec<Arc<Point>>| {
-            in_order(&mut points, order, |point| point.omega);
             if !order.is_empty() {
-                // Of pieces of the sweep that are behind a gap nothing is told.
-                let both = points.iter().zip(order);
-                points.truncate(both.take_while(|(point, omega)| point.omega == **omega).count());
+                without_gap(&mut points, order, |point| point.omega);
             }
             // The first point may have no solution.
             let known = points.iter().find_map(|point| point.unknowns());

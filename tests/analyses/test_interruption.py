@@ -48,6 +48,17 @@ def test_interruption_keeps_what_was_computed():
     assert any(f"after {done} of 20000 frequencies, at" in text for text in partial.assumptions)
 
 
+def test_interrupted_orbits_have_no_gap():
+    """Pieces of a sweep are worked on at the same time: what lies behind a gap is left out."""
+    omega = np.linspace(150, 250, 6000)
+    with pytest.raises(ss.Interrupted) as caught:
+        ss.exact_response(snecma_beam(), omega, progress=StopAt(0.0))
+    partial = caught.value.result
+    done = partial.omega.size
+    assert 0 < done < 6000
+    np.testing.assert_array_equal(partial.omega, omega[:done])
+
+
 def test_interruption_of_a_range():
     partial = interrupted((150.0, 250.0), tolerance=1e-7)
     assert partial.arrays.solved.all()

@@ -23,7 +23,7 @@ pub(crate) fn keep_instead<T>(kept: Option<&Kept<T>>, points: &[Arc<T>]) {
 
 /// Brings points that were kept as they were found into the order of the frequencies of their sweep; those of
 /// one frequency, to which it may come back, stay in theirs.
-pub fn in_order<T>(points: &mut [Arc<T>], order: &[f64], omega: impl Fn(&T) -> f64) {
+fn in_order<T>(points: &mut [Arc<T>], order: &[f64], omega: impl Fn(&T) -> f64) {
     let mut places: HashMap<u64, VecDeque<usize>> = HashMap::new();
     for (place, own) in order.iter().enumerate() {
         places.entry(own.to_bits()).or_default().push_back(place);
@@ -34,6 +34,14 @@ pub fn in_order<T>(points: &mut [Arc<T>], order: &[f64], omega: impl Fn(&T) -> f
     let mut placed: Vec<(Option<usize>, Arc<T>)> = placed.collect();
     placed.sort_by_key(|(place, _)| place.unwrap_or(usize::MAX));
     points.iter_mut().zip(placed).for_each(|(to, (_, point))| *to = point);
+}
+
+/// As [`in_order`], without what lies behind the first frequency that is missing: a curve that was ended early
+/// has no gap.
+pub fn without_gap<T>(points: &mut Vec<Arc<T>>, order: &[f64], omega: impl Fn(&T) -> f64) {
+    in_order(points, order, &omega);
+    let both = points.iter().zip(order);
+    points.truncate(both.take_while(|(point, own)| omega(point) == **own).count());
 }
 
 #[cfg(test)]
@@ -64,5 +72,13 @@ mod tests {
         assert_eq!(found, [(4.0, 1), (3.0, 3), (2.0, 0), (1.0, 2), (2.0, 4)]);
         // A piece behind a gap stays behind it.
         assert_eq!(ordered(&[1.0, 4.0], &order), [(4.0, 1), (1.0, 0)]);
+    }
+
+    #[test]
+    fn what_lies_behind_a_gap_is_left_out() {
+        let order = [4.0, 3.0, 2.0, 1.0];
+        let mut points: Vec<Arc<f64>> = [1.0, 3.0, 4.0].into_iter().map(Arc::new).collect();
+        without_gap(&mut points, &order, |omega| *omega);
+        assert_eq!(points, [Arc::new(4.0), Arc::new(3.0)]);
     }
 }

@@ -54,7 +54,7 @@ pub(crate) use forced::WarmStart;
 pub(crate) use history::history_of;
 pub use history::with_history;
 pub(crate) use kept::keep;
-pub use kept::{in_order, Kept};
+pub use kept::{without_gap, Kept};
 pub(crate) use limit_load::{is_carried_away, is_let_go};
 pub use linearised::{Cause, FrequencyJets, Linearised};
 pub(crate) use peak::brent;

@@ -63,7 +63,10 @@ pub fn orbit_sweep(orbits: PeriodicOrbits<'_>, omega: &[f64]) -> Result<Orbits, 
     let (mut points, mut interrupted, mut profile) = (Vec::new(), false, Profile::default());
     for piece in found {
         let (own, ended, spent) = piece?;
-        points.extend(own);
+        // A curve that was ended early has no gap.
+        if !interrupted {
+            points.extend(own);
+        }
         interrupted |= ended;
         profile.add_whole(&spent);
     }
