@@ -149,6 +149,18 @@ def test_how_runs_end():
     assert any("No tolerance was given" in text for text in ss.transient(beam, 9.0, 1).assumptions)
 
 
+@pytest.mark.parametrize("force", [1e150, 1e155, 1e200, 1e300])
+def test_forces_whose_squares_are_no_numbers_end_the_motion(force):
+    asked = []
+
+    def bounded(_):
+        asked.append(None)
+        assert len(asked) < 100
+
+    run = ss.transient(one_dof(force=force), 2.0, 3, progress=bounded)
+    assert run.status == "unbounded"
+
+
 @pytest.mark.slow
 def test_an_interrupted_run_keeps_its_periods(tmp_path):
     def stop(_):

@@ -142,6 +142,10 @@ impl<'a> Flow<'a> {
                     Next::At(tau, to) => (length, change) = (tau, Some((point, to))),
                 }
             }
+            // Coefficients whose squares are no numbers have no step.
+            if length <= 0.0 && change.is_none() {
+                return Err(Halt::Unbounded);
+            }
             if length > 0.0 {
                 changes = if length > INSTANT * natural { 0 } else { changes };
                 let start = state.time;
