@@ -33,24 +33,43 @@ def cycle_assumptions(
                 _end(model, settings, arrays, end, float(value), side)
                 for side, (end, value) in sides
             ),
-            bool(settings.values) and not solution.interrupted and _missed(settings, arrays),
+            bool(settings.values)
+            and not solution.interrupted
+            and _missed(model, settings, arrays, solution),
             arrays.limit is None and not (solution.interrupted or returned) and told("no-turn"),
-            solution.jumps > 0 and told("branch-jumps", jumps=solution.jumps),
+            solution.jumps > 0
+            and told(
+                "branch-jumps", jumps=solution.jumps, _remedy=_remedy(model, settings, arrays)
+            ),
             settings.method == "newton" and _truncation(model, settings, arrays),
             *structure_doubts(model),
         )
     )
 
 
-def _missed(settings: CycleSettings, arrays: CycleArrays) -> Diagnostic | None:
-    """Say at which of the values asked for there is no limit cycle."""
+_PARTIAL = ("returned", "stalled", "points")
+"""Ends of a branch that may go on behind them."""
+
+
+def _missed(
+    model: Model, settings: CycleSettings, arrays: CycleArrays, solution: _core.LimitCycles
+) -> Diagnostic | None:
+    """Say at which of the values asked for there is no limit cycle, or none was found."""
     found = arrays.value
     missed = [value for value in settings.values or () if not np.isclose(found, value).any()]
     if not missed:
         return None
     shown = ", ".join(f"{value:.6g}" for value in missed[:5])
     more = ", ..." if len(missed) > 5 else ""
-    return told("values-missed", points=len(missed), _followed=settings.followed, _at=shown + more)
+    about = {"points": len(missed), "_followed": settings.followed, "_at": shown + more}
+    if solution.jumps > 0 or any(end in _PARTIAL for end, _ in solution.ends):
+        return told("values-missed/incomplete", **about, _remedy=_remedy(model, settings, arrays))
+    if any(
+        end == "unbounded" and (settings.followed != "ratio" or missed[0] < value)
+        for end, value in solution.ends
+    ):
+        return told("values-missed/unbounded", **about)
+    return told("values-missed", **about)
 
 
 def _end(

@@ -272,13 +272,18 @@ TEXTS = {
     "branch-stalled": "Stalled: the {side} side ends at {_followed} = {value:.6g}, where no "
     "continuation was found. {_remedy}",
     "points-limit": "The branch ends after {points} points; raise max_points.",
-    "unbounded-branch": "The {side} side grows without bound towards {_followed} = {value:.6g}.",
+    "unbounded-branch": "The {side} side grows without bound; it was followed to {_followed} = "
+    "{value:.6g}.",
     "values-missed": "The branch has no limit cycle at {_followed} = {_at}; without a list of "
     "values the whole branch is followed, which shows how far it reaches.",
+    "values-missed/unbounded": "No limit cycle was found at {_followed} = {_at}: the branch goes "
+    "on with larger motions than it was followed to.",
+    "values-missed/incomplete": "No limit cycle was found at {_followed} = {_at}, where there may "
+    "be some all the same: the branch was not followed everywhere. {_remedy}",
     "no-turn": "No turn: the branch does not turn in the range, and has one side alone.",
     "no-limit": "{_name} = {value:.6g}: {_cause}",
     "branch-jumps": "{jumps} places were stepped over, at corners or between folds close to each "
-    "other.",
+    "other: limit cycles may be missing there. {_remedy}",
 }
 """Texts by code, and of variants by "code/variant"; words begin with an underscore."""
 

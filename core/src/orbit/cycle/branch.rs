@@ -27,6 +27,8 @@ const BEYOND_ONSET: f64 = 0.01;
 const PATIENCE: Duration = Duration::from_millis(200);
 /// Motion, relative to the onset of slip, at which a branch counts as going to infinity.
 const ENDLESS: f64 = 1e5;
+/// How many times further it is followed towards ratios that are asked for: beyond, friction drowns in rounding.
+const FURTHER: f64 = 1e3;
 
 /// Follows the limit cycles of a mode of `model` with the damping `C + r C_neg`.
 ///
@@ -236,9 +238,12 @@ impl Finder<'_> {
         let onset = self.onset.ratio;
         let low = self.lowest_ratio();
         let ratio = if low > onset { low } else { onset * (1.0 + BEYOND_ONSET) };
-        self.onset
-            .first_point(&self.given, table, ratio, interrupted)
-            .ok_or_else(|| self.no_start())
+        let start = |ratio| self.onset.first_point(&self.given, table, ratio, interrupted);
+        // What is asked for closer to the onset than the branch would begin is on it, too.
+        let of_ratio = *self.family.variation() == Variation::Ratio;
+        let values = self.settings.values.iter().flatten().copied().filter(|_| of_ratio);
+        let nearest = values.filter(|value| (onset..ratio).contains(value)).reduce(f64::min);
+        nearest.and_then(start).or_else(|| start(ratio)).ok_or_else(|| self.no_start())
     }
 
     fn lowest_ratio(&self) -> f64 {
@@ -293,8 +298,12 @@ impl Finder<'_> {
         let endless = |z: &[f64]| motion(z) > ENDLESS * first;
         if *self.family.variation() == Variation::Ratio {
             let lowest = self.lowest_ratio().min(start[start.len() - 1]);
+            let asked = settings.values.iter().flatten().copied().reduce(f64::min);
+            let ahead = |z: &[f64]| asked.is_some_and(|asked| asked < value(z));
+            let ends =
+                |z: &[f64]| motion(z) > ENDLESS * first * if ahead(z) { FURTHER } else { 1.0 };
             let bounds =
-                Bounds { range: (lowest, settings.range.1), most: settings.most, ends: &endless };
+                Bounds { range: (lowest, settings.range.1), most: settings.most, ends: &ends };
             let sudden = self.family.is_symmetric() && self.onset.whole <= 1.0;
             let sign = if sudden { 1.0 } else { rising(curve, &start, moved) };
             let branch = Branch::continue_branch(curve, start, sign, steps, &bounds);
