@@ -7,7 +7,6 @@ use super::forced_curve::ForcedCurve;
 use super::stops::{stops, LONGEST};
 use crate::balance::forced::ForcedBalance;
 use crate::balance::keep;
-use crate::balance::resolution_control::Decision;
 use crate::balance::settings::Resolution;
 use crate::balance::solution::{CurveEnd, Point, PointStatus};
 use crate::balance::tangent::distance;
@@ -33,13 +32,13 @@ const SHORT: f64 = 1e-4;
 
 /// A curve on its way.
 pub(super) struct Walk<'a, 'b> {
-    balance: &'b mut ForcedBalance<'a>,
+    pub(super) balance: &'b mut ForcedBalance<'a>,
     pub(super) points: Vec<Arc<Point>>,
     /// Whether it began inside the range.
     pub(super) inside: bool,
     /// Resonances with their bandwidths.
     stops: Vec<(f64, f64)>,
-    bounds: (f64, f64),
+    pub(super) bounds: (f64, f64),
     longest: f64,
     /// Number of points when the resolution was last raised.
     raised: usize,
@@ -115,12 +114,23 @@ fn walk(
     // What estimates have learnt is of another motion.
     balance.neighbour = Default::default();
     let (from, points) = (first.omega, vec![first]);
-    let mut walk =
-        Walk { balance, points, inside, stops, bounds, longest, raised: 0, evaluations: 0 };
+    let mut walk = Walk { inside, stops, longest, ..Walk::at_end(balance, points, bounds) };
     let end = walk.follow(from, to)?;
     // Nothing ahead is found once nothing is looked for.
     let ended = end != CurveEnd::Range && walk.balance.is_ended();
     Ok((walk.points, if ended { CurveEnd::Interrupted } else { end }))
+}
+
+impl<'a, 'b> Walk<'a, 'b> {
+    /// A walk that has come to the last of some points, and goes no further.
+    pub(super) fn at_end(
+        balance: &'b mut ForcedBalance<'a>,
+        points: Vec<Arc<Point>>,
+        bounds: (f64, f64),
+    ) -> Self {
+        let (stops, longest) = (Vec::new(), 0.0);
+        Self { balance, points, inside: false, stops, bounds, longest, raised: 0, evaluations: 0 }
+    }
 }
 
 impl Walk<'_, '_> {
@@ -218,14 +228,7 @@ impl Walk<'_, '_> {
             let Some(mut point) = self.solved(curve, &z, resolution, iterations)? else {
                 return Ok(Change::Ends(CurveEnd::Interrupted));
             };
-            let mut kept = resolution;
-            while let Some(more) = self.wanted(&mut point, kept) {
-                kept = more;
-                match self.finer(&point, kept)? {
-                    Some(finer) => point = finer,
-                    None => break,
-                }
-            }
+            let kept = self.climb(&mut point, resolution)?;
             if end.is_none() && kept == resolution {
                 let tolerance = self.balance.settings.tolerance;
                 let error = self.line_error(&point, length).unwrap_or(0.81 * tolerance);
@@ -264,7 +267,7 @@ impl Walk<'_, '_> {
         all.saturating_sub(self.evaluations)
     }
 
-    fn last(&self) -> &Point {
+    pub(super) fn last(&self) -> &Point {
         &self.points[self.points.len() - 1]
     }
 
@@ -322,47 +325,6 @@ impl Walk<'_, '_> {
         point.iterations = iterations;
         point.unknowns = Some(unknowns);
         Ok(Some(point))
-    }
-
-    /// The resolution that a point lacks, if any.
-    fn wanted(&mut self, point: &mut Point, at: Resolution) -> Option<Resolution> {
-        if self.balance.control.is_fixed() {
-            return None;
-        }
-        match self.balance.judge(point) {
-            Decision::Enough => None,
-            Decision::More(more) => match self.balance.instead_of(more, point) {
-                // An orbit in its place might lie on another branch.
-                Some(dear) if dear.status == PointStatus::EffortLimit => {
-                    point.status = dear.status;
-                    self.balance.control.stay(at);
-                    None
-                }
-                _ => Some(more).filter(|more| *more != at),
-            },
-            Decision::Limit(limit) => {
-                point.status = limit;
-                self.balance.control.stay(at);
-                None
-            }
-        }
-    }
-
-    /// The point of the curve of another resolution on the plane across the way to a point.
-    fn finer(&mut self, point: &Point, resolution: Resolution) -> Result<Option<Point>, Error> {
-        let table = self.balance.table(resolution.harmonics);
-        let model = self.balance.evaluated(resolution.samples)?;
-        let ask = self.balance.interruption();
-        let mut curve = ForcedCurve::new(model, &table, self.balance.settings.residual, &ask);
-        let last = self.last();
-        let (Some(known), Some(here)) = (&last.unknowns, &point.unknowns) else { return Ok(None) };
-        let (before, at) = (curve.point(known, last.omega), curve.point(here, point.omega));
-        let found = across(&mut curve, &before, &at, 1.0);
-        let inside = |z: &Vec<f64>| (self.bounds.0..=self.bounds.1).contains(&z[z.len() - 1]);
-        let Some(z) = found.filter(inside) else { return Ok(None) };
-        let solved = self.solved(&mut curve, &z, resolution, point.iterations);
-        self.balance.add_profile(&curve.profile);
-        solved
     }
 
     /// Largest relative distance of the observed DOFs from a straight line between the last point and

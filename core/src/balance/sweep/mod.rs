@@ -5,6 +5,7 @@ mod branch;
 mod branches;
 mod continuity;
 mod course;
+mod finer;
 mod forced_curve;
 mod further;
 mod given;
