@@ -2,7 +2,7 @@
 
 use super::bounds::{bound_peak, PeakBounds};
 use super::member::Member;
-use super::peak::{PeakQuery, PeakSearch, Reached, OF_CURVE};
+use super::peak::{Knot, PeakQuery, PeakSearch, Reached, OF_CURVE};
 use crate::balance::{
     keep, ForcedBalance, Kept, Linearised, PointStatus, Progress, Resolution, Settings,
 };
@@ -12,6 +12,10 @@ use crate::timing::Profile;
 use crate::Error;
 use std::sync::Arc;
 use std::time::Instant;
+
+/// Slope in the frequency, relative to height and frequency, that a peak has beside a corner alone: a
+/// smooth one is found to where it vanishes.
+const STEEP: f64 = 1e-3;
 
 /// What peak is followed.
 #[derive(Debug, Clone, PartialEq)]
@@ -159,6 +163,8 @@ pub(super) struct Follower<'a> {
     bounds: Option<bool>,
     /// Where peaks are put as they are found.
     pub(super) kept: Option<&'a Kept<Peak>>,
+    /// Whether each search starts from no other.
+    pub(super) afresh: bool,
     /// Values without a solved peak.
     pub(super) missing: Vec<Peak>,
     pub(super) interrupted: bool,
@@ -175,7 +181,8 @@ impl<'a> Follower<'a> {
         let climb = PeakSearch::new(model, settings, quest, OF_CURVE, progress)?;
         let missing = Vec::new();
         let (resolution, bounds, kept) = (None, None, None);
-        Ok(Self { model, variation, climb, resolution, bounds, kept, missing, interrupted: false })
+        let (afresh, interrupted) = (false, false);
+        Ok(Self { model, variation, climb, resolution, bounds, kept, afresh, missing, interrupted })
     }
 
     pub(super) fn finish(self, peaks: Vec<Peak>, start: Instant) -> Curve {
@@ -185,11 +192,6 @@ impl<'a> Follower<'a> {
             interrupted: self.interrupted,
             profile: Profile { total: start.elapsed(), ..self.climb.memory.profile },
         }
-    }
-
-    /// The next search starts from no other.
-    pub(super) fn forget(&mut self) {
-        self.climb.seeds.clear();
     }
 
     /// The peak at one value of the parameter, which is kept.
@@ -205,6 +207,9 @@ impl<'a> Follower<'a> {
         self.interrupted = self.interrupted || !(self.climb.progress)(share);
         if self.interrupted {
             return Ok(Peak::missing(value, PointStatus::NotComputed));
+        }
+        if self.afresh {
+            self.climb.seeds.clear();
         }
         let settings = self.climb.settings;
         let member = Member::new(self.variation, self.model, settings.residual, value)?;
@@ -256,8 +261,34 @@ impl<'a> Follower<'a> {
     }
 
     /// Derivative of the peak in the parameter: the frequency at which it is highest moves, but
-    /// the amplitude is stationary in it.
+    /// the amplitude is stationary in it. At a corner, where slip begins, it is not: the peak is where
+    /// the curves of both sides cross, and moves with it.
     fn slope(
+        &mut self,
+        member: &Member,
+        sample: usize,
+        samples: Option<usize>,
+    ) -> Result<f64, Error> {
+        let own = self.slope_at(member, sample, samples)?;
+        let Some(other) = self.across_corner(sample) else { return Ok(own) };
+        let across = self.slope_at(member, other, samples)?;
+        let [rise, fall] = [sample, other].map(|i| self.climb.seeds[i].knots[0].slope);
+        Ok((rise * across - fall * own) / (rise - fall))
+    }
+
+    /// The sample on the other side of a corner of the curve at this one.
+    fn across_corner(&self, sample: usize) -> Option<usize> {
+        let seeds = &self.climb.seeds;
+        let own = seeds[sample].knots[0];
+        let other = if own.slope > 0.0 { sample + 1 } else { sample.checked_sub(1)? };
+        let across = seeds.get(other)?.knots[0];
+        let steep = |knot: Knot| knot.slope.abs() * knot.at > STEEP * knot.height;
+        let corner = own.slope * across.slope < 0.0 && steep(own) && steep(across);
+        corner.then_some(other)
+    }
+
+    /// Derivative of the amplitude at a sample in the parameter.
+    fn slope_at(
         &mut self,
         member: &Member,
         sample: usize,

@@ -89,7 +89,8 @@ pub fn optimum(
     for _ in 0..CONFIRMATIONS {
         // What searches that start from each other have missed, one that starts afresh may see.
         let Some(least) = minima.first().copied().filter(|_| !follower.interrupted) else { break };
-        follower.forget();
+        // Once that has come to pass all others do, too, or they would miss it again.
+        follower.afresh = true;
         let Some(again) = try_value(&mut follower, least.peak.value, 1.0)? else { break };
         if again.height <= least.height * (1.0 + REFUTED) {
             break;

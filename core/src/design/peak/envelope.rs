@@ -58,6 +58,13 @@ pub(super) struct Gap {
     pub(super) closed: bool,
 }
 
+impl Gap {
+    /// Whether no point inside has confirmed what it promises.
+    pub(super) fn is_unconfirmed(&self) -> bool {
+        self.errors.contains(&UNSEEN)
+    }
+}
+
 /// Samples in order, and what is known of the intervals between them.
 #[derive(Debug)]
 pub(super) struct Envelope {

@@ -12,4 +12,5 @@ mod upper_branch;
 
 pub(super) use global_peak::{climbed, PeakSearch, Reached, OF_CURVE, OF_STUDY};
 pub use global_peak::{summits, GlobalPeak, PeakQuery, Summits};
+pub(super) use interpolant::Knot;
 pub(super) use samples::{predicted, Sample};

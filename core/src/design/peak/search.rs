@@ -91,6 +91,8 @@ pub(super) struct Search<'a, 'b> {
     failure: Option<PointStatus>,
     /// Where one of several contacts begins to slip, as far as that has been looked at [rad/s].
     pub(super) changes: Vec<f64>,
+    /// Intervals between slipping points in which sticking has been looked for [rad/s].
+    pub(super) windows: Vec<[f64; 2]>,
 }
 
 impl<'a, 'b> Search<'a, 'b> {
@@ -116,6 +118,7 @@ impl<'a, 'b> Search<'a, 'b> {
             failures: 0,
             failure: None,
             changes: Vec::new(),
+            windows: Vec::new(),
         }
     }
 
@@ -149,7 +152,8 @@ impl<'a, 'b> Search<'a, 'b> {
             }
             let next = self.envelope.most_promising(self.aim.precision.gain);
             let Some((interval, share)) = next.filter(|_| splits < self.aim.most_points) else {
-                if self.look_at_onsets()? || self.look_at_changes(look.narrowest())? {
+                let seen = self.look_between_slips()? || self.look_at_onsets()?;
+                if seen || self.look_at_changes(look.narrowest())? {
                     continue;
                 }
                 break;

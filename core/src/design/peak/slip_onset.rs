@@ -11,10 +11,56 @@ const ONSET: f64 = 4e-3;
 const SHORT: f64 = 1e-7;
 /// Share of the highest point from which such a point is a rival.
 const ONSET_RIVAL: f64 = 0.5;
+/// Share of the highest point from which an end of an interval is a rival that may hide where contacts
+/// stick, …
+const WINDOW_RIVAL: f64 = 0.25;
+/// … and where in it that is looked for.
+const WINDOW: [f64; 3] = [0.5, 0.25, 0.75];
 /// Bisections of the place at which one of several contacts begins to slip.
 const CHANGE: usize = 4;
 
 impl Search<'_, '_> {
+    /// Looks for frequencies at which contacts stick between points at which they slip, about an
+    /// antiresonance of their motion: there is an onset of slip on either side then. It takes the stuck
+    /// response alone, and is done where no point has confirmed what an interval promises. Whether there
+    /// are any that no point has seen.
+    pub(super) fn look_between_slips(&mut self) -> Result<bool, Error> {
+        let rival = |ends: &[Sample]| {
+            (0..self.aim.groups.len()).any(|group| {
+                let height = |one| self.envelope.height_of(one, group);
+                height(&ends[0]).max(height(&ends[1])) > WINDOW_RIVAL * self.envelope.height(group)
+            })
+        };
+        let slip = |ends: &[Sample]| !ends[0].sticks() && !ends[1].sticks();
+        let intervals = self.envelope.intervals().filter(|(gap, ends)| {
+            let looked_at = |one: &[f64; 2]| one[0] <= ends[0].at && ends[1].at <= one[1];
+            gap.is_unconfirmed()
+                && slip(ends)
+                && rival(ends)
+                && ends[1].at - ends[0].at > SHORT * ends[1].at
+                && !self.windows.iter().any(looked_at)
+        });
+        let intervals: Vec<[f64; 2]> =
+            intervals.map(|(_, ends)| [ends[0].at, ends[1].at]).collect();
+        let mut found = false;
+        for [left, right] in intervals {
+            self.windows.push([left, right]);
+            for share in WINDOW {
+                let omega = left + share * (right - left);
+                if !self.balance.sticks(omega)? {
+                    continue;
+                }
+                if let Some(sample) = self.solve(omega, None)? {
+                    let before = self.envelope.samples.len();
+                    self.envelope.insert(sample);
+                    found |= self.envelope.samples.len() > before;
+                }
+                break;
+            }
+        }
+        Ok(found)
+    }
+
     /// Looks at the frequencies at which slip begins: what friction has held down may have a peak there that
     /// no slope on either side tells of. Whether there are any that no point has seen.
     pub(super) fn look_at_onsets(&mut self) -> Result<bool, Error> {
