@@ -2,7 +2,7 @@
 
 use super::bounds::{bound_peak, PeakBounds};
 use super::member::Member;
-use super::peak::{Knot, PeakQuery, PeakSearch, Reached, OF_CURVE};
+use super::peak::{Knot, PeakQuery, PeakSearch, Reached, OF_CURVE, OF_LEAST};
 use crate::balance::{
     keep, ForcedBalance, Kept, Linearised, PointStatus, Progress, Resolution, Settings,
 };
@@ -163,7 +163,7 @@ pub(super) struct Follower<'a> {
     bounds: Option<bool>,
     /// Where peaks are put as they are found.
     pub(super) kept: Option<&'a Kept<Peak>>,
-    /// Whether each search starts from no other.
+    /// Whether each search starts from no other, and with more caution.
     pub(super) afresh: bool,
     /// Values without a solved peak.
     pub(super) missing: Vec<Peak>,
@@ -209,6 +209,7 @@ impl<'a> Follower<'a> {
             return Ok(Peak::missing(value, PointStatus::NotComputed));
         }
         if self.afresh {
+            self.climb.precision = OF_LEAST;
             self.climb.seeds.clear();
         }
         let settings = self.climb.settings;

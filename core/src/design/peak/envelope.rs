@@ -10,9 +10,6 @@ const UNSEEN: f64 = 0.5;
 /// Share by which a curve may rise above the higher end of an interval in which no point has confirmed
 /// the interpolant: one point inside has to tell.
 const UNCONFIRMED: f64 = 0.1;
-/// The error of an interpolant falls with the fourth power of its width; this times as much is
-/// allowed for.
-const CAUTION: f64 = 4.0;
 /// Share of what was allowed for that remains at least, however well a point agrees: one may agree
 /// by chance.
 const CHANCE: f64 = 1e-2;
@@ -74,11 +71,14 @@ pub(super) struct Envelope {
     gaps: Vec<Gap>,
     /// Shortest interval that is split, relative to the frequency.
     shortest: f64,
+    /// The error of an interpolant falls with the fourth power of its width; this times as much is
+    /// allowed for.
+    caution: f64,
 }
 
 impl Envelope {
     /// Of groups of so many curves, without samples; the narrowest bandwidth is relative to the frequency.
-    pub(super) fn new(sizes: impl Iterator<Item = usize>, narrowest: f64) -> Self {
+    pub(super) fn new(sizes: impl Iterator<Item = usize>, narrowest: f64, caution: f64) -> Self {
         let [least, most] = SHORTEST;
         let mut last = 0;
         let groups = sizes.map(|size| {
@@ -90,6 +90,7 @@ impl Envelope {
             samples: Vec::new(),
             gaps: Vec::new(),
             shortest: (OF_BANDWIDTH * narrowest).clamp(least, most),
+            caution,
         }
     }
 
@@ -210,8 +211,9 @@ impl Envelope {
             (missed(curve).max(CHANCE * before), most)
         });
         let measured: Vec<(f64, f64)> = measured.collect();
+        let caution = self.caution;
         let errors = |part: f64| -> Vec<f64> {
-            let allowed = |(error, most): &(f64, f64)| (CAUTION * error * part.powi(4)).min(*most);
+            let allowed = |(error, most): &(f64, f64)| (caution * error * part.powi(4)).min(*most);
             measured.iter().map(allowed).collect()
         };
         let idle = |part: f64| if part > 0.5 { gap.idle + 1 } else { 0 };

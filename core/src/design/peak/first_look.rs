@@ -26,6 +26,8 @@ pub(crate) struct Precision {
     /// The same in the last steps to where the slope vanishes: the frequency errs by the root of it,
     /// in bandwidths.
     pub(super) flat: f64,
+    /// How many times the error of an interpolant, as its width tells, is allowed for.
+    pub(super) caution: f64,
 }
 
 /// What is looked for.

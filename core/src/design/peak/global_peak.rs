@@ -15,12 +15,16 @@ use crate::timing::Profile;
 use crate::Error;
 use std::time::Instant;
 
+/// How many times the error that an interpolant should have is allowed for.
+const CAUTION: f64 = 4.0;
 /// Of a single peak, whose frequency and slopes are asked for, …
-const SINGLE: Precision = Precision { gain: 1e-13, flat: 1e-20 };
+const SINGLE: Precision = Precision { gain: 1e-13, flat: 1e-20, caution: CAUTION };
 /// … of peaks along a parameter, …
-pub(crate) const OF_CURVE: Precision = Precision { gain: 1e-11, flat: 1e-20 };
+pub(crate) const OF_CURVE: Precision = Precision { gain: 1e-11, flat: 1e-20, caution: CAUTION };
+/// … of the least of them, which lies where an error is overlooked if that can be, …
+pub(crate) const OF_LEAST: Precision = Precision { caution: 10.0 * CAUTION, ..OF_CURVE };
 /// … and of many disks, of which the heights count.
-pub(crate) const OF_STUDY: Precision = Precision { gain: 1e-8, flat: 1e-10 };
+pub(crate) const OF_STUDY: Precision = Precision { gain: 1e-8, flat: 1e-10, caution: CAUTION };
 /// Points after which a search ends in any case.
 const MOST_POINTS: usize = 1000;
 
@@ -134,7 +138,7 @@ pub(crate) struct PeakSearch<'a> {
     pub(crate) progress: &'a Progress<'a>,
     /// Share of the work that is done, for the progress.
     pub(crate) share: f64,
-    pub(super) precision: Precision,
+    pub(crate) precision: Precision,
     pub(crate) memory: WarmStart,
     /// Samples of the last search.
     pub(crate) seeds: Vec<Sample>,

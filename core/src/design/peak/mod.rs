@@ -10,7 +10,7 @@ mod search;
 mod slip_onset;
 mod upper_branch;
 
-pub(super) use global_peak::{climbed, PeakSearch, Reached, OF_CURVE, OF_STUDY};
+pub(super) use global_peak::{climbed, PeakSearch, Reached, OF_CURVE, OF_LEAST, OF_STUDY};
 pub use global_peak::{summits, GlobalPeak, PeakQuery, Summits};
 pub(super) use interpolant::Knot;
 pub(super) use samples::{predicted, Sample};

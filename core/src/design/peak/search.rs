@@ -107,7 +107,8 @@ impl<'a, 'b> Search<'a, 'b> {
         if loaded.len() < 2 || aim.measure == Measure::Fundamental {
             loaded.clear();
         }
-        let envelope = Envelope::new(aim.groups.iter().map(Vec::len), narrowest);
+        let envelope =
+            Envelope::new(aim.groups.iter().map(Vec::len), narrowest, aim.precision.caution);
         Self {
             residual,
             aim,
