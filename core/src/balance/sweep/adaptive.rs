@@ -114,11 +114,11 @@ pub(crate) fn smooth_piece(
         // Nothing is known of the bend at the start, where the step stays, nor behind a point
         // that is not solved, where it grows to get past.
         let unknown = if point.is_solved() { 0.81 * target } else { 0.0 };
-        let known = match &points[..] {
+        let bent = match &points[..] {
             [.., before, last] => line_error(balance, [before, last, &point]),
             _ => None,
         };
-        let error = known.unwrap_or(unknown);
+        let error = bent.unwrap_or(unknown);
         let factor = (0.9 * (target / error.max(1e-12)).sqrt()).clamp(0.3, 2.0);
         let too_long = error > FARTHEST * target && length > 1.5 * SHORTEST * omega;
         step = (length * factor).min(longest);
@@ -164,8 +164,10 @@ fn inside(
     let step = last.omega - before.omega;
     // The same line from its other end.
     let seen = line_error(balance, [new, last, before]).unwrap_or(0.0);
+    if seen <= SEEN_BEHIND * balance.settings.tolerance {
+        return Ok(found);
+    }
     let mut lines = vec![(Arc::clone(before), Arc::clone(last))];
-    lines.retain(|_| seen > SEEN_BEHIND * balance.settings.tolerance);
     while let Some((from, to)) = lines.pop() {
         let omega = 0.5 * (from.omega + to.omega);
         let guess = tangent(balance, &from, omega);
