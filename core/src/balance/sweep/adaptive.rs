@@ -80,7 +80,10 @@ pub(crate) fn smooth_piece(
     let direction = (to - from).signum();
     let begin = first.omega;
     let end = last.map_or(to, |last| last.omega);
-    let (mut points, mut kept) = (vec![first], 0);
+    keep(balance.kept, &first);
+    // So many points are final: what lies inside the last step the point behind it shows.
+    let (mut points, mut kept) = (vec![first], 1);
+    let mut interrupted = false;
     // What lies outside the range may be narrow, too.
     let fine = balance.model.compliance().narrowest_bandwidth().max(1e-6 * longest);
     let mut step = if begin == from {
@@ -93,7 +96,8 @@ pub(crate) fn smooth_piece(
     while let Some(&(stop, _)) = stops.get(passed) {
         let known = &points[points.len() - 1];
         if !balance.report((known.omega - begin) / (end - begin)) {
-            return Ok((points, true));
+            interrupted = true;
+            break;
         }
         let room = (stop - known.omega).abs();
         // Two even steps instead of a long and a tiny one.
@@ -108,7 +112,8 @@ pub(crate) fn smooth_piece(
             }
         };
         if point.status == PointStatus::NotComputed {
-            return Ok((points, true));
+            interrupted = true;
+            break;
         }
         let target = balance.settings.tolerance;
         // Nothing is known of the bend at the start, where the step stays, nor behind a point
@@ -131,7 +136,8 @@ pub(crate) fn smooth_piece(
         let here = point.omega;
         let inside = inside(balance, &points, &point)?;
         if inside.iter().any(|one| one.status == PointStatus::NotComputed) {
-            return Ok((points, true));
+            interrupted = true;
+            break;
         }
         let last = points.len() - 1;
         points.splice(last..last, inside);
@@ -145,8 +151,11 @@ pub(crate) fn smooth_piece(
             passed += 1;
         }
     }
+    if interrupted {
+        points.truncate(kept);
+    }
     points[kept..].iter().for_each(|one| keep(balance.kept, one));
-    Ok((points, false))
+    Ok((points, interrupted))
 }
 
 /// Points inside the last step, where the point behind it shows that a straight line is too far off: slip that
