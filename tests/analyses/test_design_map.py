@@ -226,6 +226,7 @@ def test_ctrl_c_keeps_the_cells_that_are_done():
     assert shares[-1] == 1.0
 
 
+@pytest.mark.slow
 def test_cells_that_are_done_are_kept_where_the_last_one_cannot_be_stopped(monkeypatch):
     """A step of a law, as a factorisation, asks nobody whether to go on."""
 

@@ -67,6 +67,7 @@ def test_interruption_of_a_range():
     assert not any("between 150 and 250" in text for text in partial.assumptions)
 
 
+@pytest.mark.slow
 def test_a_first_point_without_a_solution_does_not_lose_the_others(monkeypatch):
     """What is left to itself has put its points aside, whether they are solved or not."""
     structure = ss.Structure([[1.0]], [[4e4]], dofs=["tip"])

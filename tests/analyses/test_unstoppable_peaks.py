@@ -32,6 +32,7 @@ ANALYSES = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ANALYSES)
 def test_peaks_that_were_found_are_kept(name, monkeypatch):
     def press(share):
