@@ -39,6 +39,8 @@ def read(folder, text, name="joint.bdf"):
         (CHEXA, "CHEXA*,10,1,11,12\n*,13,14,15,16\n*,17,18"),
         ("ENDDATA\n", "PSOLID,1,1\nRBE2,92,21,123,22,23\nENDDATA\nGRID,77,,1.,1.,1.\n"),
         ("ENDDATA\n", "CQUAD4,90,1,21,22,23,24\n"),
+        # marks at the ends of lines that nothing continues, and of others that are read over
+        (GRID, "GRID,22,,2.,0.,1.,,,,+7\nPLOAD4,1,2,,,,,,,+7\n+7,1"),
         ("\n", "\r\n"),
         ("BEGIN BULK", "TITLE = a, b\nSET 1 = 5 THRU 7,\n 9\nbegin bulk\nGRDSET,,0,,,,0"),
         ("THRU", "thru"),
@@ -95,6 +97,11 @@ def test_included_files(tmp_path):
         (CHEXA, "CHEXA,10,1,11,12,13,14,15,16\n,17,17", "element 10: corners coincide"),
         (CHEXA, "CTETRA,10,1,11,12,13,15,16,17\n,18,14,21,22,23,24,25", "CTETRA 10 has more than"),
         (CHEXA, CHEXA.partition("\n")[2], "GRID 18 goes on over a second line; a card is missing"),
+        (
+            "ENDDATA",
+            "SET1,7,1,2,3,4,5,6,7,+S1\nPSOLID,1,1\n+S1,11\nENDDATA",
+            "'+S1' continues line 29; write it there",
+        ),
         ("ENDDATA", "CTETRA,5,1,21,22,23,25,11\nENDDATA", "5, at the outside, has some midside"),
     ],
 )
@@ -104,6 +111,13 @@ def test_what_would_be_wrong_is_refused(tmp_path, old, new, says):
         read(tmp_path, SOUND.replace(old, new))
     assert says in str(error.value)
     assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("card", ["CPYRAM", "CPYRA"])
+def test_pyramids_of_nastran_and_optistruct(tmp_path, card):
+    top = f"GRID,41,,1.,1.5,3.\n{card},40,1,25,26,27,28,41\nENDDATA"
+    mesh = read(tmp_path, SOUND.replace("ENDDATA", top), "joint.fem")
+    assert [kind for kind, _ in mesh.cells] == ["hexahedron", "pyramid"]
 
 
 @pytest.mark.parametrize("default", [False, True])

@@ -32,6 +32,8 @@ def found(mesh):
         ("31, 32, 33, 34\n*STEP", "31, 1.0\n32, 1.\n33\n34,\n*STEP"),
         ("20, S1", "HIGH, S1"),
         ("*STEP\n", "*SYSTEM\n*STEP\n"),
+        # a surface of the nodes of the set that has its name
+        ("*STEP\n", "*SURFACE, TYPE=NODE, NAME=FEET\nFEET\n*STEP\n"),
         ("\n", "\r\n"),
         ("\n", "\n** a comment\n"),
     ],
@@ -54,6 +56,10 @@ def test_rows_in_files_of_their_own(tmp_path):
     mesh = ss.read_mesh(deck(tmp_path, text))
     assert len(mesh.node_sets["ALL"]) == 16
     assert mesh.numbers[mesh.node_sets["LOWER"]].tolist() == [*range(1, 9)]
+    (tmp_path / "upper, sets.inp").write_text("*NSET, NSET=UPPER, ELSET=HIGH\n")
+    others = '*INCLUDE, PASSWORD=x, INPUT="upper, sets.inp"\n*include, input = sets.inp\n*STEP'
+    both = ss.read_mesh(deck(tmp_path, text.replace("*STEP", others)))
+    assert len(both.node_sets["UPPER"]) == len(both.node_sets["LOWER"]) == 8
     (tmp_path / "sets.inp").unlink()
     with pytest.raises(ss.ModelError, match=r"no file sets\.inp, which it includes"):
         ss.read_mesh(tmp_path / "joint.inp")
@@ -98,6 +104,13 @@ def test_pyramids_and_triangles(tmp_path):
         ("*STEP", "*NSET, NSET=X, ELSET=LOV\n*STEP", "unknown ELSET 'LOV'"),
         ("*STEP", "*NSET, NSET=X, ELSET=SPRINGS\n*STEP", "unknown ELSET"),
         ("*STEP", "*ELSET, ELSET=S\n30,\n*NSET, NSET=X, ELSET=S\n*STEP", "element 30 has no faces"),
+        ("*STEP", "*INCLUDE,\nINPUT=sets.inp\n*STEP", "*INCLUDE: INPUT= is missing; write it on"),
+        ("*STEP", "*SURFACE, TYPE=NODE, NAME=FEET\nALL\n*STEP", "the set FEET has other nodes"),
+        (
+            "*NSET, NSET=FEET",
+            "*SURFACE, TYPE=NODE, NAME=FEET\nALL\n*NSET, NSET=FEET",
+            "surface FEET: the set FEET has other nodes; rename one",
+        ),
         ("*STEP", "*TRANSFORM, NSET=FEAT\n0,0,0,0,0,1\n*STEP", "unknown set 'FEAT'"),
     ],
 )

@@ -177,6 +177,21 @@ def test_work_is_shared_between_the_nodes_of_a_contact():
     assert fields["displacement amplitude"][0, 0] == pytest.approx(response.amplitude("4.1")[-1])
 
 
+def test_a_node_that_opens_does_not_slip_for_that():
+    mesh = ss.Mesh(np.eye(3)[:2])
+    structure = ss.Structure(
+        np.eye(3), 1e6 * np.eye(3), ss.ModalDamping(0.02), ["2.1", "2.2", "2.3"]
+    )
+    stiffness = {"tangential_stiffness": 1e5, "normal_stiffness": 1e5}
+    pad = ss.Coulomb(structure.dofs, normal=[0, 0, 1], friction=0.3, preload=5.0, **stiffness)
+    forces = [ss.Force("2.1", 40.0), ss.Force("2.3", 100.0)]
+    response = ss.forced_response(ss.Model(structure, [pad], forces), [1000.0], harmonics=9)
+    fields = mesh.motion(response, 0)
+    assert 0.0 < fields["slip fraction"][1] == response.slip_fraction(0)[0, 0]
+    assert fields["slip fraction"][1] < response.open_fraction(0)[0, 0]
+    assert 0.0 < fields["dissipation"][1] == response.dissipation(0)[0, 0]
+
+
 def test_what_paraview_reads(mesh, reduced, response, tmp_path):
     fields = mesh.modes(reduced, 2) | mesh.motion(response, 2, reduced)
     mesh.write_vtu(tmp_path / "a.vtu", fields)

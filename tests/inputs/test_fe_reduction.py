@@ -101,9 +101,31 @@ def test_the_report_tells_a_held_structure_from_a_free_one():
     assert "rigid body" in str(free)
 
 
+def test_boundary_without_inertia():
+    """Five masses of twenty, none of them at the boundary: the reduced mass is singular."""
+    _, K = chain(20)
+    M = np.diag([1.0] * 5 + [0.0] * 15)
+    dofs = [f"{node}.1" for node in range(1, 21)]
+    squares = 1.0 / scipy.linalg.eigh(M, K.toarray(), eigvals_only=True)[:-6:-1]
+    for few in ({"modes": 5}, {"omega": 1e9}):
+        reduced = ss.craig_bampton(M, K, [19], dofs=dofs, **few)
+        assert reduced.omega.size == 5
+        report = reduced.report(10)
+        for found in (report.full, report.reduced):
+            np.testing.assert_allclose(found, np.sqrt(squares), rtol=1e-12)
+        fields = ss.Mesh(np.arange(60.0).reshape(20, 3)).modes(reduced, 5)
+        told = [float(name.split()[3]) for name in fields]
+        np.testing.assert_allclose(told, np.sqrt(squares) / (2 * np.pi), rtol=1e-5)
+        for shape in fields.values():
+            assert shape[:5, 0] @ shape[:5, 0] == pytest.approx(1.0)
+    with pytest.raises(ModelError, match="modes: 6 is too large; give at most 5"):
+        ss.craig_bampton(M, K, [19], modes=6)
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [
+        ({"mass": np.diag([0.0] * 19 + [1.0])}, "mass: only boundary dofs have inertia"),
         ({"boundary": ["5.9"]}, r"boundary: unknown dof '5\.9'; did you mean '5\.1'"),
         ({"boundary": [20]}, "boundary: 20: 20 is too large; give at most 19"),
         ({"boundary": []}, "boundary: it is empty"),

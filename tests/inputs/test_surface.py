@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from stickslip import ModelError
 from stickslip.fe.surface import Surface, turned
 
 
@@ -101,3 +102,16 @@ def test_a_curved_quadratic_surface_has_its_area():
         assert (cosine > 0.99).all()
     assert errors[1] < errors[0] / 12.0
     assert errors[1] < 1e-5
+
+
+@pytest.mark.parametrize("width", [1.0, 1.5])
+def test_shells_that_are_numbered_in_opposite_senses_are_refused(width):
+    """Of unequal areas their normals do not cancel, and one would be that of the wrong side."""
+    corners = [[0, 0], [1, 0], [1, 1], [0, 1], [1 + width, 0], [1 + width, 1]]
+    points = np.column_stack([corners, np.zeros(6)])
+    faces = np.array([[0, 1, 2, 3], [1, 4, 5, 2]])
+    np.testing.assert_array_equal(flat([faces], points).normals, [[0.0, 0.0, 1.0]] * 6)
+    opposite = flat([faces[:1], turned(faces[1:])], points)
+    assert opposite.area == pytest.approx(1.0 + width)
+    with pytest.raises(ModelError, match="the edge of nodes 2 and 3 are numbered in opposite"):
+        _ = opposite.normals

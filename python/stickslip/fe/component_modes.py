@@ -102,8 +102,11 @@ def craig_bampton(
         M, K = known.in_si(M, "mass", ways).tocsc(), known.in_si(K, "stiffness", ways).tocsc()
     names, kept = _boundary(boundary, rows, size)
     inner = np.setdiff1d(np.arange(size), kept)
-    count = _mode_count(modes, omega, inner.size)
     K_ii, M_ii = K[inner][:, inner].tocsc(), M[inner][:, inner].tocsc()
+    inertia = M_ii.diagonal()
+    moving = inertia > max(_MASSLESS * inertia.max(), 0.0)
+    most = min(max(inner.size - 1, 1), int(moving.sum()))
+    count = _mode_count(modes, omega, most)
     try:
         factor = Factor(K_ii)
         squares, shapes = lowest_modes(K_ii, M_ii, count, factor)
@@ -118,15 +121,13 @@ def craig_bampton(
     for panel in panels(*coupling.shape):
         constraint[:, panel] = factor.solve(coupling[:, panel].toarray())
     np.negative(constraint, out=constraint)
-    inertia = M_ii.diagonal()
-    moving = inertia > _MASSLESS * inertia.max()
     highest = float((K_ii.diagonal()[moving] / inertia[moving]).max())
     if not squares[0] > _NOISE * np.finfo(np.float64).eps * highest:
         raise _moves_rigidly(names)
     if omega is not None:
         limit = physical_number(omega, "rad/s", "omega")
-        while squares[-1] < limit**2 and count < inner.size - 1:
-            count = min(2 * count, inner.size - 1)
+        while squares[-1] < limit**2 and count < most:
+            count = min(2 * count, most)
             squares, shapes = lowest_modes(K_ii, M_ii, count, factor)
         wanted = int(np.searchsorted(squares, limit**2))
         if not wanted:
@@ -185,15 +186,20 @@ def _own_name(dof: Dof, rows: tuple[str, ...] | None) -> str:
     return rows[row] if rows is not None and row < len(rows) else str(row)
 
 
-def _mode_count(modes: int | None, omega: float | None, inner: int) -> int:
+def _mode_count(modes: int | None, omega: float | None, most: int) -> int:
+    """Return how many modes are computed at first; `most` is how many there are."""
     if (modes is None) == (omega is None):
         raise ModelError("modes: give either modes=16, their number, or omega=, their limit")
-    largest = max(inner - 1, 1)
+    if not most:
+        raise ModelError(
+            "mass: only boundary dofs have inertia, so that the others have no modes; condense "
+            "them, K_bb - K_bi K_ii^-1 K_ib, and give the result to Structure"
+        )
     if modes is not None:
-        return whole_number(modes, "modes", smallest=1, largest=largest)
+        return whole_number(modes, "modes", smallest=1, largest=most)
     if physical_number(omega, "rad/s", "omega") <= 0.0:
         raise ModelError(f"omega: {omega:g} must be positive")
-    return min(_FIRST, largest)
+    return min(_FIRST, most)
 
 
 def _moves_rigidly(names: tuple[str, ...]) -> ModelError:

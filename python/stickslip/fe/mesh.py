@@ -25,6 +25,7 @@ from stickslip.checks import (
 )
 from stickslip.errors import ModelError
 from stickslip.fe.faces import outside
+from stickslip.fe.natural import natural_modes
 from stickslip.fe.overlap import distinct
 from stickslip.fe.reduction import Reduction
 from stickslip.fe.solid import Solid
@@ -32,7 +33,6 @@ from stickslip.fe.surface import Places, Surface
 from stickslip.fe.vtu import write_vtu
 from stickslip.results.arrays import Measure, amplitude_of
 from stickslip.results.forced_response import ForcedResponse
-from stickslip.units import physical_number
 
 Part: TypeAlias = str | NDArray[np.bool_]
 """A surface or a set of nodes by its name, or which nodes of the mesh it has."""
@@ -245,19 +245,10 @@ class Mesh:
         are mass-normalised, (n, 3).
         """
         names = _rows_of(reduction)
-        stiffness = reduction.stiffness.copy()
-        for dof, spring in (springs or {}).items():
-            if dof not in reduction.boundary:
-                raise ModelError(f"springs: {unknown('dof', dof, reduction.boundary)}")
-            place = reduction.boundary.index(dof)
-            stiffness[place, place] += physical_number(spring, "N/m", f"springs: {dof}")
-        largest = len(reduction.dofs)
-        wanted = whole_number(count, "count", smallest=1, largest=largest)
-        from scipy.linalg import eigh
-
-        squares, shapes = eigh(stiffness, reduction.mass, subset_by_index=(0, wanted - 1))
-        hertz = np.sqrt(np.clip(squares, 0.0, None)) / (2.0 * np.pi)
-        moved = reduction.recover(shapes.T)
+        squares, shapes = natural_modes(reduction, springs)
+        wanted = whole_number(count, "count", smallest=1, largest=squares.size)
+        hertz = np.sqrt(np.clip(squares[:wanted], 0.0, None)) / (2.0 * np.pi)
+        moved = reduction.recover(shapes[:, :wanted].T)
         return {
             f"mode {number} at {frequency:.6g} Hz": self.field(names, shape)
             for number, (frequency, shape) in enumerate(zip(hertz, moved, strict=True), 1)
@@ -339,19 +330,21 @@ class Mesh:
         """Return slip and dissipation at the nodes of contacts."""
         slip, work = (np.full(len(self.nodes), np.nan) for _ in range(2))
         model = response.model
-        rows = [contact.rows(model.structure) for contact in model.contacts]
-        for number, ends in enumerate(np.vstack(rows) if rows else []):
-            touched = [model.structure.dofs[place] for place in np.flatnonzero(ends)]
-            if reduction is not None:
-                full = _rows_of(reduction)
-                kept = [one for one in touched if one in reduction.boundary]
-                touched = [full[reduction.rows[reduction.boundary.index(one)]] for one in kept]
-            nodes = np.unique(self._places(touched)[0])
-            share = response.arrays.slip_fraction[point, number]
-            lost = response.arrays.dissipation[point, number] / max(len(nodes), 1)
-            slip[nodes] = np.fmax(slip[nodes], share)
-            work[nodes] = np.where(np.isnan(work[nodes]), lost, work[nodes] + lost)
-        return {"slip fraction": slip, "dissipation": work} if rows else {}
+        for number, contact in enumerate(model.contacts):
+            rows = contact.rows(model.structure).reshape(contact.points, -1, len(response.dofs))
+            moved = np.asarray(rows.any(axis=1))
+            told = response.slip_fraction(number)[point], response.dissipation(number)[point]
+            for ends, share, lost in zip(moved, *told, strict=True):
+                touched = [response.dofs[place] for place in np.flatnonzero(ends)]
+                if reduction is not None:
+                    full = _rows_of(reduction)
+                    kept = [one for one in touched if one in reduction.boundary]
+                    touched = [full[reduction.rows[reduction.boundary.index(one)]] for one in kept]
+                nodes = np.unique(self._places(touched)[0])
+                part = lost / max(len(nodes), 1)
+                slip[nodes] = np.fmax(slip[nodes], share)
+                work[nodes] = np.where(np.isnan(work[nodes]), part, work[nodes] + part)
+        return {"slip fraction": slip, "dissipation": work} if model.contacts else {}
 
     def _places(self, names: Sequence[str]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """Return nodes and directions of degrees of freedom, both counted from 0."""

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.checks import Matrix, MatrixLike, unknown, whole_number
+from stickslip.checks import Matrix, MatrixLike, whole_number
 from stickslip.errors import ModelError
+from stickslip.fe.natural import natural_modes, shift_below, springs_of
 from stickslip.fe.sparse import Factor, lowest_modes
 from stickslip.model import Force
 from stickslip.model.damping import DampingLaw
 from stickslip.model.structure import Structure
-from stickslip.units import physical_number
 
 if TYPE_CHECKING:
     from scipy.sparse import csc_array
@@ -174,23 +174,15 @@ class Reduction:
         structures: stuck dampers.
         """
         count = whole_number(frequencies, "frequencies", smallest=1, largest=self.size - 1)
-        from scipy.linalg import eigh
         from scipy.sparse import diags_array
 
-        count = min(count, len(self.dofs))
-        reduced, added = self.stiffness.copy(), np.zeros(self.size)
-        for dof, value in (springs or {}).items():
-            if dof not in self.boundary:
-                raise ModelError(f"springs: {unknown('dof', dof, self.boundary)}")
-            place = self.boundary.index(dof)
-            spring = physical_number(value, "N/m", f"springs: {dof}")
+        own, _ = natural_modes(self, springs)
+        count, added = min(count, own.size), np.zeros(self.size)
+        for place, spring in springs_of(self, springs):
             added[self.rows[place]] += spring
-            reduced[place, place] += spring
         K, M = (self.full_stiffness + diags_array(added)).tocsc(), self.full_mass
-        # Below 0, so that a free structure can be factored too.
-        shift = -0.1 * float(self.omega[0]) ** 2
+        shift = shift_below(self)
         squares, _ = lowest_modes(K, M, count, Factor((K - shift * M).tocsc()), shift)
-        own = eigh(reduced, self.mass, eigvals_only=True)[:count]
         omegas = np.sqrt(np.clip(squares, 0.0, None))
         return ReductionReport(
             (self.size, len(self.boundary), self.omega.size),
@@ -199,7 +191,7 @@ class Reduction:
             int((omegas < _RIGID * self.omega[0]).sum()),
             *self._translations(),
             omegas,
-            np.sqrt(np.clip(own, 0.0, None)),
+            np.sqrt(np.clip(own[:count], 0.0, None)),
         )
 
     def _translations(self) -> tuple[dict[str, float], dict[str, float]]:

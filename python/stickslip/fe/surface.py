@@ -96,6 +96,7 @@ class Surface:
     @cached_property
     def normals(self) -> Matrix:
         """Unit normal at each node, the mean of its faces by their areas, shape (n, 3)."""
+        self._require_one_side()
         sums = np.zeros((len(self.labels), 3))
         for face, shares, vectors in self._integrals:
             np.add.at(sums, face, np.einsum("qk,mqi->mki", shares, vectors))
@@ -108,6 +109,28 @@ class Surface:
             )
         normals: Matrix = sums / length
         return normals
+
+    def _require_one_side(self) -> None:
+        """Refuse neighbours whose normals point to different sides, as those of shells may.
+
+        Around their normals faces go along the edge between them in opposite directions.
+        """
+        corners = [face[:, : _CORNERS[face.shape[1]]] for face in self.faces]
+        edges = np.vstack(
+            [np.stack([one, np.roll(one, -1, axis=1)], -1).reshape(-1, 2) for one in corners]
+        )
+        # Corners of a collapsed face coincide.
+        edges = edges[edges[:, 0] != edges[:, 1]]
+        there, count = np.unique(edges, axis=0, return_counts=True)
+        size = len(self.labels)
+        doubled, back = there[count > 1], edges[:, 1] * size + edges[:, 0]
+        alone = doubled[~np.isin(doubled[:, 0] * size + doubled[:, 1], back)]
+        if alone.size:
+            one, other = self.labels[alone[0]]
+            raise ModelError(
+                f"surface: the faces at the edge of nodes {one} and {other} are numbered in "
+                "opposite senses, so that their normals point to different sides; number them alike"
+            )
 
     @cached_property
     def shortest_edge(self) -> float:

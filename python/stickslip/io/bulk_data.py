@@ -48,6 +48,7 @@ def cards(lines: Iterable[str], names: Container[str]) -> Iterator[Card]:
     """Give each card of some names."""
     found: Card | None = None
     mark = ""
+    open_marks: dict[str, int] = {}
     for number, line in enumerate(lines, 1):
         text = line.partition("$")[0].expandtabs().rstrip()
         if not text:
@@ -57,6 +58,7 @@ def cards(lines: Iterable[str], names: Container[str]) -> Iterator[Card]:
             if found:
                 if not head[0].isalpha():
                     raise ValueError(f"line {text[:40]!r} is no card and continues none")
+                open_marks[mark[1:].strip()] = found.line
                 yield found
             name = head.rstrip("*").rstrip().upper()
             included = text.strip().upper().startswith("INCLUDE")
@@ -64,14 +66,34 @@ def cards(lines: Iterable[str], names: Container[str]) -> Iterator[Card]:
             found = Card(number, name, []) if name in names else None
             if included and found:
                 found.fields.append(text.strip()[len("INCLUDE") :])
+                mark = ""
                 continue
-        elif found and head[1:] and mark[1:] and head[1:].strip() != mark[1:].strip():
-            raise ValueError(f"line {number}: {head!r} does not continue {mark!r}")
+        else:
+            own = head[1:].strip()
+            if own and own != mark[1:].strip():
+                # Marks may lead from anywhere to anywhere; numbers of lines look like them.
+                if own in open_marks:
+                    raise ValueError(
+                        f"line {number}: {head!r} continues line {open_marks[own]}; write it there"
+                    )
+                if found and mark[1:]:
+                    raise ValueError(f"line {number}: {head!r} does not continue {mark!r}")
         if found:
-            own, mark = _fields(text)
-            found.fields.extend(own)
+            fields, mark = _fields(text)
+            found.fields.extend(fields)
+        elif open_marks:
+            mark = _mark(text)
     if found:
         yield found
+
+
+def _mark(text: str) -> str:
+    """Return the mark of the continuation of a line, whatever else it says."""
+    if "," in text:
+        words = text.split(",")
+        count = 4 if "*" in words[0] else 8
+        return "".join(words[count + 1 : count + 2]).strip()
+    return text[_HEAD + 64 :].strip()
 
 
 def _fields(text: str) -> tuple[list[str], str]:

@@ -16,7 +16,8 @@ from stickslip.io.source import at_line
 
 _SOLIDS: dict[str, tuple[str, int, list[int]]] = {
     "CTETRA": ("tetra", 4, [*range(6)]),
-    "CPYRAM": ("pyramid", 5, [*range(8)]),
+    # Of MSC Nastran and OptiStruct.
+    **dict.fromkeys(("CPYRAM", "CPYRA"), ("pyramid", 5, [*range(8)])),
     "CPENTA": ("wedge", 6, [*range(3), *range(6, 9), *range(3, 6)]),
     "CHEXA": ("hexahedron", 8, [*range(4), *range(8, 12), *range(4, 8)]),
 }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,6 +17,9 @@ _FLAGS = ("GENERATE", "UNSORTED", "INTERNAL")
 """Options without a value, as far as they stand with those that are read."""
 _NAMED = {"NSET": "NSET", "ELSET": "ELSET", "SURFACE": "NAME", "ELEMENT": "TYPE"}
 """What a keyword must say."""
+
+_INPUT = re.compile(r"""\bINPUT\s*=\s*("[^"]+"|'[^']+'|[^,\s][^,]*)""", re.I)
+"""The file that a keyword names, in quotes if it has commas."""
 
 _Line: TypeAlias = tuple[str, int, str]
 """Name of the file if it is an included one, number of the line, and what it says."""
@@ -61,7 +65,7 @@ def blocks(file: Path) -> Iterator[Block]:
         if text.startswith("*"):
             if found:
                 yield _whole(found, file)
-            found = Block(text[1:].split(",")[0].strip().upper(), _options(text), [])
+            found = Block(_keyword(text), _options(text), [])
             open_ended = text.endswith(",")
         elif found and open_ended and (more := _continued(text)):
             found.options.update(more)
@@ -107,8 +111,14 @@ def _lines(file: Path, depth: int) -> Iterator[_Line]:
         text = line.strip()
         if not text or text.startswith("**"):
             continue
-        if text.upper().replace(" ", "").startswith("*INCLUDE,INPUT="):
-            name = text.partition("=")[2].strip().strip("\"'")
-            yield from _lines(file.parent / name, depth + 1)
+        if text.startswith("*") and _keyword(text) == "INCLUDE":
+            named = _INPUT.search(text)
+            if named is None:
+                raise ValueError("*INCLUDE: INPUT= is missing; write it on the same line")
+            yield from _lines(file.parent / named[1].strip().strip("\"'"), depth + 1)
         else:
             yield file.name if depth else "", number, text
+
+
+def _keyword(text: str) -> str:
+    return text[1:].split(",")[0].strip().upper()

@@ -61,6 +61,7 @@ class _Deck:
     elements: dict[int, tuple[str, tuple[int, ...]]] = field(default_factory=dict)
     node_sets: dict[str, dict[int, None]] = field(default_factory=dict)
     element_sets: dict[str, dict[int, None]] = field(default_factory=dict)
+    node_surfaces: dict[str, dict[int, None]] = field(default_factory=dict)
     surfaces: dict[str, list[tuple[str, str]]] = field(default_factory=dict)
     left_out: set[int] = field(default_factory=set)
     rotated: list[str] = field(default_factory=list)
@@ -146,7 +147,9 @@ class _Deck:
                     if row[1].isdecimal() and int(row[1]) in self.points:
                         raise ValueError(f"surface {name}: is {row[1]} a node? give one a line")
                     del row[1]
-            _collect(self.node_sets, name, {}, rows)
+            # Names of sets are no names of surfaces: both may have one name, and other nodes.
+            members = _members(self.node_sets, f"of surface {name}", {}, rows)
+            self.node_surfaces.setdefault(name, {}).update(members)
         else:
             pairs = [(row[0], row[1] if len(row) > 1 else "") for row in rows]
             self.surfaces.setdefault(name, []).extend(pairs)
@@ -171,6 +174,9 @@ class _Deck:
             cells[kind].append(positions)
         arrays = {kind: np.array(one, dtype=np.int64) for kind, one in cells.items()}
         sets = {}
+        for name, own in self.node_surfaces.items():
+            if self.node_sets.setdefault(name, own).keys() != own.keys():
+                raise ValueError(f"surface {name}: the set {name} has other nodes; rename one")
         for name, members in self.node_sets.items():
             lost = next((node for node in members if node not in place), None)
             if lost is not None:
@@ -240,7 +246,14 @@ def _collect(
     sets: dict[str, dict[int, None]], name: str, options: dict[str, str], rows: list[Row]
 ) -> None:
     """Add numbers, ranges, and members of other sets to a set."""
-    own = sets.setdefault(name, {})
+    sets.setdefault(name, {}).update(_members(sets, name, options, rows))
+
+
+def _members(
+    sets: dict[str, dict[int, None]], name: str, options: dict[str, str], rows: list[Row]
+) -> dict[int, None]:
+    """Return the numbers, ranges, and members of other sets that rows name."""
+    own: dict[int, None] = {}
     for row in rows:
         if "GENERATE" in options:
             own.update(dict.fromkeys(_generated(name, row.whole())))
@@ -252,6 +265,7 @@ def _collect(
                 own[whole_field(word, signed=True)] = None
             else:
                 raise ValueError(f"set {name}: {unknown('set', word, sets)}")
+    return own
 
 
 def _generated(name: str, numbers: list[int]) -> range:

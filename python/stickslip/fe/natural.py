@@ -1,0 +1,60 @@
+"""Natural modes of reduced structures, whose mass matrix may be singular."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.checks import unknown
+from stickslip.errors import ModelError
+from stickslip.units import physical_number
+
+if TYPE_CHECKING:
+    from stickslip.fe.reduction import Reduction
+
+_MASSLESS = 1e-12
+"""Inertia below this part of the largest is none."""
+
+
+def natural_modes(
+    reduction: Reduction, springs: Mapping[str, float] | None = None
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return squared angular frequencies and shapes, (n, modes), of a reduction, ascending.
+
+    The shapes are mass-normalised. Motions of boundary degrees of freedom that move no mass are no
+    modes. `springs` to ground at boundary degrees of freedom are added [N/m].
+    """
+    from scipy.linalg import eigh
+
+    stiffness, shift = reduction.stiffness.copy(), shift_below(reduction)
+    for place, spring in springs_of(reduction, springs):
+        stiffness[place, place] += spring
+    try:
+        # A singular mass matrix has no inverse, the shifted stiffness has one.
+        inverses, shapes = eigh(reduction.mass, stiffness - shift * reduction.mass)
+    except np.linalg.LinAlgError:
+        raise ModelError(
+            "springs: with them the structure is not stable; give none below 0"
+            if springs
+            else "stiffness: it is not that of a stable structure; look at the matrices"
+        ) from None
+    inert = np.flatnonzero(inverses > _MASSLESS * inverses[-1])[::-1]
+    return shift + 1.0 / inverses[inert], shapes[:, inert] / np.sqrt(inverses[inert])
+
+
+def shift_below(reduction: Reduction) -> float:
+    """Return a number below all eigenvalues: a free structure, too, can be factored there."""
+    return -0.1 * float(reduction.omega[0]) ** 2
+
+
+def springs_of(
+    reduction: Reduction, springs: Mapping[str, float] | None
+) -> Iterator[tuple[int, float]]:
+    """Give the place in the boundary and the stiffness [N/m] of springs to ground."""
+    for dof, value in (springs or {}).items():
+        if dof not in reduction.boundary:
+            raise ModelError(f"springs: {unknown('dof', dof, reduction.boundary)}")
+        yield reduction.boundary.index(dof), physical_number(value, "N/m", f"springs: {dof}")
