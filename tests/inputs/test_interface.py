@@ -191,6 +191,46 @@ def test_relative_displacements_are_another_view_of_the_same_joint():
     scale = np.abs(x).max()
     np.testing.assert_allclose(relative[first], x[first] - x[second], atol=1e-8 * scale)
     np.testing.assert_allclose(relative[second], x[second], atol=1e-8 * scale)
+    back = interface.absolute(np.stack([relative, 1j * relative]), names)
+    np.testing.assert_allclose(back, [x, 1j * x], atol=1e-8 * scale)
+    with pytest.raises(ss.ModelError, match=r"absolute: shape \(2,\) for 120 dofs; give one"):
+        interface.absolute([1.0, 2.0], names)
+
+
+def test_fields_of_a_relative_model_are_those_of_both_bodies():
+    square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]) * 0.01
+    cells = [("quad", [[0, 1, 2, 3], [4, 7, 6, 5]])]
+    mesh = ss.Mesh(np.vstack([square, square]), cells)
+    lower = np.arange(8) < 4
+    interface = ss.ContactInterface.from_surfaces(mesh, lower, mesh, ~lower)
+    random = np.random.default_rng(2).standard_normal((2, 24, 24))
+    M, K = np.eye(24) + 0.01 * random[0] @ random[0].T, 1e6 * (np.eye(24) + random[1] @ random[1].T)
+    names = [f"{node}.{way}" for node in mesh.numbers for way in (1, 2, 3)]
+    laws = {"friction": 0.3, "tangential_stiffness": 1e9, "normal_stiffness": 1e9, "pressure": 2e4}
+    force, damping = [ss.Force("6.1", 100.0)], ss.ModalDamping(0.01)
+    structures = [
+        ss.Structure(M, K, damping, names),
+        ss.Structure(*(interface.relative(one, names).toarray() for one in (M, K)), damping, names),
+    ]
+    plain, moved = (
+        ss.forced_response(
+            ss.Model(one, [interface.contact(**laws, relative=relative)], force),
+            [800.0],
+            harmonics=3,
+            observe=names,
+        )
+        for one, relative in zip(structures, (False, True), strict=True)
+    )
+    assert plain.slip_fraction(0).max() > 0.1
+    wanted, found = mesh.motion(plain, 0), mesh.motion(moved, 0, relative=interface)
+    largest = wanted["displacement amplitude"].max()
+    for name in wanted.keys() - {"slip fraction", "dissipation"}:
+        np.testing.assert_allclose(found[name], wanted[name], rtol=0, atol=1e-6 * largest)
+
+    change = [interface.relative(one, names) for one in (M, K)]
+    reduced = ss.craig_bampton(*change, interface.first_dofs, modes=8, dofs=names)
+    for field in mesh.modes(reduced, 3, relative=interface).values():
+        assert field.ravel() @ M @ field.ravel() == pytest.approx(1.0)
 
 
 def _bonded(stiffness, contact, names):

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
-from stickslip.checks import Matrix
+from stickslip.checks import Matrix, as_list, brief, whole_array
 from stickslip.errors import ModelError
 from stickslip.fe.overlap import corner_keys, uncovered
 from stickslip.fe.surface import Places, outward
@@ -50,6 +50,15 @@ KINDS = {
 """Kinds of elements, named as meshio does, and the shape of each."""
 _SHELLS = ("triangle", "quad")
 _SOLID = re.compile("(VTK_LAGRANGE_)?(tetra|pyramid|wedge|hexahedron)", re.I)
+
+
+def tables(given: Iterable[object]) -> Iterator[tuple[str, Places]]:
+    """Give the elements of each kind, a table of the positions of their nodes."""
+    for pair in given:
+        parts = as_list(pair)
+        if parts is None or len(parts) != 2:
+            raise ModelError(f"mesh: cells: {brief(pair)} is no pair; give (kind, nodes)")
+        yield str(parts[0]), whole_array(parts[1], f"mesh: {parts[0]}", "positions of nodes")
 
 
 def outside(cells: Sequence[tuple[str, Places]], points: Matrix) -> list[Places]:

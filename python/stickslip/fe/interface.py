@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from stickslip.checks import Matrix, brief, listed, members, real_number, text, unknown
 from stickslip.errors import ModelError
@@ -251,7 +251,7 @@ class ContactInterface:
 
         The degrees of freedom of the first nodes become x_first - x_other; all others stay, so that
         the names do: S^T A S and S^T f of x = S x'. A reduction then keeps `first_dofs` alone, half
-        as many, and its fixed modes are those of the bonded interface.
+        as many, and its fixed modes are those of the bonded interface. `absolute` leads back.
 
         Parameters
         ----------
@@ -271,14 +271,7 @@ class ContactInterface:
         """
         from scipy.sparse import coo_array, eye_array, issparse
 
-        if self.other is None:
-            raise ModelError(f"{_ENTRY}: on the ground displacements are relative already")
-        rows = {text(name, "dofs"): row for row, name in enumerate(dofs)}
-        lost = next((one for one in self.dofs if one not in rows), None)
-        if lost is not None:
-            raise ModelError(f"{_ENTRY}: {unknown('dof', lost, rows)}")
-        ends = np.array([rows[one] for one in self.dofs]).reshape(2, -1)
-        size = len(rows)
+        size, ends = self._ends(dofs)
         follows = coo_array((np.ones(ends.shape[1]), (ends[0], ends[1])), shape=(size, size))
         change = (eye_array(size) + follows).tocsc()
         if not issparse(value) and np.ndim(np.asarray(value)) == 1:
@@ -290,6 +283,37 @@ class ContactInterface:
         if matrix.shape[0] != size:
             raise ModelError(f"dofs: {size} names for {matrix.shape[0]} rows; give one each")
         return (change.T @ matrix @ change).tocsc()
+
+    def absolute(self, values: ArrayLike, dofs: Iterable[str]) -> NDArray[Any]:
+        """Return the motion of a model of `relative` in displacements of both bodies, x = S x'.
+
+        Parameters
+        ----------
+        values : array_like, shape (..., N)
+            Displacements, real or complex: those of the first nodes are x_first - x_other.
+        dofs : iterable of str
+            Names of the N degrees of freedom.
+
+        Raises
+        ------
+        ModelError
+            If the interface is on the ground, or a degree of freedom is missing.
+        """
+        moved, (size, ends) = np.array(values), self._ends(dofs)
+        if moved.shape[-1:] != (size,):
+            raise ModelError(f"absolute: shape {moved.shape} for {size} dofs; give one of each")
+        moved[..., ends[0]] += moved[..., ends[1]]
+        return moved
+
+    def _ends(self, dofs: Iterable[str]) -> tuple[int, Places]:
+        """Return how many rows a model has, and those of both bodies, (2, 3 n)."""
+        if self.other is None:
+            raise ModelError(f"{_ENTRY}: on the ground displacements are relative already")
+        rows = {text(name, "dofs"): row for row, name in enumerate(dofs)}
+        lost = next((one for one in self.dofs if one not in rows), None)
+        if lost is not None:
+            raise ModelError(f"{_ENTRY}: {unknown('dof', lost, rows)}")
+        return len(rows), np.array([rows[one] for one in self.dofs]).reshape(2, -1)
 
 
 def _pairs(first: Matrix, second: Matrix, reach: float) -> tuple[Places, Places]:

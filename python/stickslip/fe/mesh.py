@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.checks import (
-    as_list,
     brief,
     members,
     real_array,
@@ -24,7 +23,7 @@ from stickslip.checks import (
     whole_number,
 )
 from stickslip.errors import ModelError
-from stickslip.fe.faces import outside
+from stickslip.fe.faces import outside, tables
 from stickslip.fe.natural import natural_modes
 from stickslip.fe.overlap import distinct
 from stickslip.fe.reduction import Reduction
@@ -33,6 +32,9 @@ from stickslip.fe.surface import Places, Surface
 from stickslip.fe.vtu import write_vtu
 from stickslip.results.arrays import Measure, amplitude_of
 from stickslip.results.forced_response import ForcedResponse
+
+if TYPE_CHECKING:
+    from stickslip.fe.interface import ContactInterface
 
 Part: TypeAlias = str | NDArray[np.bool_]
 """A surface or a set of nodes by its name, or which nodes of the mesh it has."""
@@ -98,7 +100,7 @@ class Mesh:
                 f"mesh: {known.size} numbers, {np.unique(known).size} of them different, for "
                 f"{count} nodes; give numbers=, one per node"
             )
-        elements = tuple(_cells(members(cells, "mesh: cells", "[(kind, nodes), ...]")))
+        elements = tuple(tables(members(cells, "mesh: cells", "[(kind, nodes), ...]")))
         for kind, of in elements:
             if of.ndim != 2 or ((of < 0) | (of >= count)).any():
                 raise ModelError(f"mesh: a {kind} has a node that is not among the {count}")
@@ -237,18 +239,24 @@ class Mesh:
         return made
 
     def modes(
-        self, reduction: Reduction, count: int = 6, springs: Mapping[str, float] | None = None
+        self,
+        reduction: Reduction,
+        count: int = 6,
+        springs: Mapping[str, float] | None = None,
+        relative: ContactInterface | None = None,
     ) -> dict[str, NDArray[np.float64]]:
         """Return the natural modes of a reduced structure as fields, for `write_vtu`.
 
         `springs` to ground at boundary degrees of freedom [N/m] are added: stuck dampers. Shapes
-        are mass-normalised, (n, 3).
+        are mass-normalised, (n, 3). `relative` is as of `motion`.
         """
         names = _rows_of(reduction)
         squares, shapes = natural_modes(reduction, springs)
         wanted = whole_number(count, "count", smallest=1, largest=squares.size)
         hertz = np.sqrt(np.clip(squares[:wanted], 0.0, None)) / (2.0 * np.pi)
         moved = reduction.recover(shapes[:, :wanted].T)
+        if relative is not None:
+            moved = relative.absolute(moved, names)
         return {
             f"mode {number} at {frequency:.6g} Hz": self.field(names, shape)
             for number, (frequency, shape) in enumerate(zip(hertz, moved, strict=True), 1)
@@ -260,6 +268,7 @@ class Mesh:
         index: int,
         reduction: Reduction | None = None,
         measure: Measure = "half_range",
+        relative: ContactInterface | None = None,
     ) -> dict[str, NDArray[np.float64]]:
         """Return a point of a response as fields, for `write_vtu`.
 
@@ -280,6 +289,9 @@ class Mesh:
             "node.direction".
         measure : {"half_range", "max", "fundamental"}, optional
             Of the amplitude.
+        relative : ContactInterface, optional
+            Whose `relative` the model has: the first nodes of its pairs move by what the others do,
+            and what the model has of them. Its contacts are at the first nodes.
         """
         dofs = response.model.structure.dofs
         if response.dofs != tuple(dofs):
@@ -294,6 +306,8 @@ class Mesh:
         series = response.arrays.displacement[point]
         names = tuple(dofs) if reduction is None else _rows_of(reduction)
         whole: Any = series if reduction is None else reduction.recover(series)
+        if relative is not None:
+            whole = relative.absolute(whole, names)
         first = self.field(names, whole[1])
         return {
             "displacement amplitude": self.field(names, amplitude_of(whole.T.copy(), measure)),
@@ -379,12 +393,3 @@ def _rows_of(reduction: Reduction) -> tuple[str, ...]:
     if reduction.row_names is None:
         raise ModelError("reduction: its rows have no names; give dofs= to craig_bampton")
     return reduction.row_names
-
-
-def _cells(given: Iterable[object]) -> Iterator[tuple[str, Places]]:
-    """Give the elements of each kind, a table of the positions of their nodes."""
-    for pair in given:
-        parts = as_list(pair)
-        if parts is None or len(parts) != 2:
-            raise ModelError(f"mesh: cells: {brief(pair)} is no pair; give (kind, nodes)")
-        yield str(parts[0]), whole_array(parts[1], f"mesh: {parts[0]}", "positions of nodes")
