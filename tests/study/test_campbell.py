@@ -268,3 +268,21 @@ def test_aerodynamic_damping_takes_percent_and_waves_that_decay_leave_no_empty_a
     np.testing.assert_array_equal(plain.rest_ratio, found.rest_ratio)
     axes = found.plot("tip")
     assert [text.get_text() for text in axes.texts] == ["all waves decay"]
+
+
+def test_speeds_in_any_order_and_a_mistuned_disk():
+    speeds = np.linspace(50.0, 250.0, 9)
+    mixed = ss.campbell(blade, speed=speeds[[4, 0, 7, 2, 8, 1, 3, 6, 5]], orders=[2, 4])
+    ascending = ss.campbell(blade, speed=speeds, orders=[2, 4])
+    assert len(mixed.crossings()) == 2
+    assert mixed.crossings() == ascending.crossings()
+    drawn = mixed.plot().lines[2]
+    np.testing.assert_allclose(drawn.get_xdata(), speeds / RPM)
+
+    disk = ss.BladedDisk(
+        blade(0.0).structure, 8, forces=[ss.Force("tip", 1.0)], engine_order=3, couplings=[]
+    )
+    tuned = ss.campbell(disk, speed=[50.0, 100.0])
+    mistuned = ss.campbell(disk.mistuned(np.zeros(8)), speed=[50.0, 100.0])
+    assert mistuned.orders == tuned.orders == (3,)
+    assert mistuned.crossings()[0].speed == pytest.approx(200.0 / 3)

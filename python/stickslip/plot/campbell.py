@@ -35,7 +35,8 @@ def campbell(ax: Axes, /, result: Campbell, **options: Unpack[CampbellOptions]) 
         The axes. Circles mark resonances with all contacts stuck.
     """
     omega, orders = style.OMEGA[options["omega_unit"]], result.orders
-    x = result.speed * style.OMEGA["rpm"].factor
+    rising = np.argsort(result.speed)
+    x = result.speed[rising] * style.OMEGA["rpm"].factor
     top = _MARGIN * max(orders) * float(result.speed.max())
     places = sorted({result.place(order) for order in orders})
     ends = np.array([0.0, x.max()])
@@ -59,7 +60,8 @@ def campbell(ax: Axes, /, result: Campbell, **options: Unpack[CampbellOptions]) 
         for which, values in enumerate((result.stuck, result.slipping)[: 1 + slips]):
             name = label if not which else f"{of}, slipping"
             looks: Looks = {"color": colour, "ls": (style.STUCK, style.FREE)[which], "lw": 1.3}
-            for curve in values[:, place].T[values[:, place].min(axis=0) <= top]:
+            own = values[rising, place]
+            for curve in own.T[own.min(axis=0) <= top]:
                 ax.plot(x, omega.factor * curve, label=name, **looks)
                 name = "_"
     found = result.crossings()

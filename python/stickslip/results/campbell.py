@@ -6,7 +6,7 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from stickslip.disk import BladedDisk, NodalDiameters
+from stickslip.disk import BladedDisk, MistunedDisk, NodalDiameters
 from stickslip.drawn import Drawn
 from stickslip.results.fields import Columns, Float, Int, Shown, column
 from stickslip.results.result import ColumnResult
@@ -67,8 +67,9 @@ class Campbell(ColumnResult):
         if self.settings.orders is not None:
             return self.settings.orders
         harmonics = sorted({force.harmonic for force in self.model.forces if force.harmonic} or {1})
-        if isinstance(self.model, BladedDisk):
-            return tuple(self.model.order_of(harmonic) for harmonic in harmonics)
+        disk = self.model.disk if isinstance(self.model, MistunedDisk) else self.model
+        if isinstance(disk, BladedDisk):
+            return tuple(disk.order_of(harmonic) for harmonic in harmonics)
         return tuple(harmonics)
 
     def place(self, order: int) -> int:
@@ -84,14 +85,15 @@ class Campbell(ColumnResult):
         With all contacts stuck, or `slipping`.
         """
         found = []
+        rising = np.argsort(self.speed)
+        speeds, own = self.speed[rising], (self.slipping if slipping else self.stuck)[rising]
         for order in self.orders:
             place = self.place(order)
-            frequencies = (self.slipping if slipping else self.stuck)[:, place]
-            for mode, omega in enumerate(frequencies.T):
-                apart = omega - order * self.speed
+            for mode, omega in enumerate(own[:, place].T):
+                apart = omega - order * speeds
                 for at in np.flatnonzero(apart[:-1] * apart[1:] <= 0.0):
                     share = apart[at] / (apart[at] - apart[at + 1]) if apart[at] else 0.0
-                    speed = self.speed[at] + share * (self.speed[at + 1] - self.speed[at])
+                    speed = speeds[at] + share * (speeds[at + 1] - speeds[at])
                     where = order, int(self.diameter[place]), mode
                     found.append(Crossing(*where, float(speed), order * float(speed)))
         return sorted(set(found), key=lambda one: one.speed)
