@@ -78,6 +78,28 @@ def test_threads_stores_and_portions_have_the_same_bits(study, tmp_path):
         )
 
 
+def test_a_store_knows_the_engine_orders_of_all_forces(tmp_path):
+    def disk(orders):
+        blade = ss.Structure([[1.0]], [[1e4]], ss.ModalDamping(0.05), ["tip"])
+        return ss.BladedDisk(
+            blade,
+            6,
+            [ss.Coupling("tip", stiffness=1e4)],
+            [ss.Jenkins("tip", stiffness=1e3, slip_force=0.1)],
+            [ss.Force("tip", 1.0), ss.Force("tip", 1.0, harmonic=3)],
+            engine_order=1,
+            engine_orders=orders,
+        )
+
+    keys = {"samples": 1, "harmonics": 3, "store": tmp_path / "a.db"}
+    quantity = ss.HighestPeak("tip", omega=(60.0, 200.0))
+    slip = {"slip_force": stats.uniform(0.1, 0.1)}
+    first, again = (ss.uncertainty(disk({}), slip, quantity, **keys) for _ in range(2))
+    assert same(first, again)
+    with pytest.raises(ss.ModelError, match="engine_orders is missing there and"):
+        ss.uncertainty(disk({3: 1}), slip, quantity, **keys)
+
+
 @pytest.mark.slow
 def test_a_row_that_was_changed_is_refused_by_name(tmp_path):
     store = tmp_path / "a.db"

@@ -199,9 +199,12 @@ def _identity_of(model: Model, settings: SampledSettings) -> Identity:
     parts: dict[str, object] = {}
     if isinstance(model, BladedDisk):
         blocks = model.interface
+        # Stores of disks without any do not name them.
+        orders = {str(k): order for k, order in model.engine_orders.items()}
         parts = {
             "sectors": model.sectors,
             "engine_order": model.engine_order,
+            **({"engine_orders": orders} if orders else {}),
             "couplings": [one.to_spec() for one in model.couplings],
             "interface": ""
             if blocks is None
