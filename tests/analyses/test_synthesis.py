@@ -96,6 +96,35 @@ def test_limit_cycles_of_one_mode_are_right_or_say_that_they_are_not(seed):
             assert stable == (np.array(direct.branch)[same][nearest] == "sticking")
 
 
+def oscillator(damping):
+    structure = ss.Structure([[1.0]], [[1e4]], [[damping]], dofs=["x"])
+    return ss.Model(structure, [ss.Jenkins("x", stiffness=1e3, slip_force=1.0)])
+
+
+def test_limit_cycles_at_the_onset_of_slip_know_their_error():
+    """Without viscous damping nothing is needed of the negative one up to the onset."""
+    mode = ss.nonlinear_modes(oscillator(0.0), amplitude=(1e-4, 1e-1))
+    ratios = [0.001, 0.01]
+    found = mode.limit_cycles([[-2.0]], ratios)
+    direct = ss.limit_cycles(oscillator(0.0), [[-2.0]], ratio=ratios)
+    assert found.stable.all()
+    small = np.array(direct.branch) == "sticking"
+    off = np.abs(found.amplitude("x") / direct.amplitude("x")[small] - 1.0)
+    assert (off < 2e-5).all()
+    assert off[0] < found.error_indicator[0] < 0.01
+
+
+def test_a_damping_that_takes_from_cycles_that_the_structure_feeds():
+    """C = -2 kg/s of its own and 0.5 times 2 kg/s are 0.5 times -2 kg/s."""
+    amplitude = np.geomspace(1e-4, 1e-1, 200)
+    usual, other = (
+        ss.nonlinear_modes(oscillator(own), amplitude=amplitude).limit_cycles([[added]], [0.5])
+        for own, added in ((0.0, -2.0), (-2.0, 2.0))
+    )
+    np.testing.assert_allclose(other.modal_amplitude, usual.modal_amplitude, rtol=1e-2)
+    assert usual.stable.tolist() == other.stable.tolist() == [True, False]
+
+
 def test_what_does_not_scale_is_refused():
     model, dofs = random_chain(0)
     keys = {"amplitude": [1e-5, 1e-4], "harmonics": 3}

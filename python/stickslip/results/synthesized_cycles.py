@@ -59,8 +59,9 @@ def synthesized_cycles(mode: Mode, negative: Float, ratio: Float) -> Synthesized
         )
         return each.real
 
-    needed = -2.0 * damping * natural * work(mass) / work(negative)
-    slope = np.gradient(np.log(np.abs(needed)), np.log(grid))
+    fed = -work(negative)
+    needed = 2.0 * damping * natural * work(mass) / fed
+    rise = np.gradient(needed, np.log(grid))
     places, ratios, sizes = [], [], []
     for one in ratio.tolist():
         above = needed >= one
@@ -86,6 +87,7 @@ def synthesized_cycles(mode: Mode, negative: Float, ratio: Float) -> Synthesized
     )
     feed = 2.0 * own * omega**2
     balance = moved + along / (feed * amplitude) + shapes.damping_error(amplitude)
-    error = moved + balance / np.abs(slope[places])
-    arrays = omega, amplitude, error, known, slope[places] > 0.0
+    error = moved + balance * known / np.abs(rise[places])
+    # Where the matrix feeds nothing but takes, a motion that needs more of it has too little.
+    arrays = omega, amplitude, error, known, (fed * rise)[places] > 0.0
     return SynthesizedCycles(mode, *(constant(np.array(one)) for one in arrays))
