@@ -286,3 +286,10 @@ def test_speeds_in_any_order_and_a_mistuned_disk():
     mistuned = ss.campbell(disk.mistuned(np.zeros(8)), speed=[50.0, 100.0])
     assert mistuned.orders == tuned.orders == (3,)
     assert mistuned.crossings()[0].speed == pytest.approx(200.0 / 3)
+
+
+def test_a_speed_that_changes_nothing_is_refused(tmp_path):
+    text = DISK.replace("stiffening = [[0, 0, 0], [0, 0.35, 0], [0, 0, 0.5]]", 'speed = "3000 rpm"')
+    (tmp_path / "study.toml").write_text(text + "omega = [100.0]\n", encoding="utf-8")
+    with pytest.raises(ss.ModelError, match="'speed' without 'stiffening' changes nothing"):
+        Study.load(tmp_path / "study.toml")

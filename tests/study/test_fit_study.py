@@ -10,6 +10,7 @@ import stickslip as ss
 from small_study import PAD
 from stickslip.cli import app
 from stickslip.study import Study
+from stickslip.study.measurement_table import MeasurementTable
 
 STUDY = (
     PAD
@@ -128,12 +129,38 @@ damping_noise = "2 %"
         (('file = "high.csv"', 'file = "none.csv"'), "no such file"),
         (('"pad.stiffness" = [1e2, 1e5]', '"pat.stiffness" = [1e2, 1e5]'), "unknown contact"),
         (('length_unit = "mm"', 'length_unit = "kg"'), "length_unit"),
+        (('length_unit = "mm"', 'force = "20 N"'), "'force' is for a Universal File; leave it out"),
+        (('length_unit = "mm"', "harmonics = 3"), "'harmonics' is for the loop of a contact"),
+        (('"low.csv"', '"low.unv"'), "'frequency_unit' is for frequencies of a text file"),
+        (
+            ('"low.csv"\ndof = "tip"', '"low.csv"\nmode = 0'),
+            "'relative_noise' is for amplitudes and forces",
+        ),
     ],
 )
 def test_bad_tables_are_refused(folder, change, said):
     (folder / "study.toml").write_text(STUDY.replace(*change), encoding="utf-8")
     with pytest.raises(ss.ModelError, match=said):
         list(Study.load(folder / "study.toml").run())
+
+
+@pytest.mark.parametrize(
+    ("table", "said"),
+    [
+        ({"file": "a.unv", "dof": "tip", "measure": "max"}, "'measure' is for amplitudes of"),
+        ({"file": "a.uff", "dof": "tip", "length_unit": "mm"}, "'length_unit' is for displacem"),
+        ({"file": "a.csv", "mode": 0, "length_unit": "mm"}, "'length_unit' is for displacements"),
+        ({"file": "a.csv", "contact": "pad", "frequency_unit": "Hz"}, "'frequency_unit' is for"),
+        ({"file": "a.unv", "dof": "tip", "measure": "fundamental", "force": 2.0}, ""),
+        ({"file": "a.csv", "mode": 0, "dof": "tip", "length_unit": "mm"}, ""),
+    ],
+)
+def test_keys_that_change_nothing_are_refused(table, said):
+    if not said:
+        MeasurementTable(**table)
+        return
+    with pytest.raises(ValueError, match=said):
+        MeasurementTable(**table)
 
 
 def test_a_line_that_is_no_pair_is_named(folder):

@@ -160,6 +160,8 @@ class StructureTable(Table):
     def _require_stiffening(self) -> Self:
         if self.stiffening is None and self.softening is not None:
             raise ValueError("'softening' without 'stiffening'; give both")
+        if self.stiffening is None and self.speed is not None:
+            raise ValueError("'speed' without 'stiffening' changes nothing; give both, or none")
         return self
 
 

@@ -31,6 +31,16 @@ from stickslip.units import quantity
 
 _UFF = (".uff", ".unv", ".58")
 _OF_AMPLITUDES = ("relative_noise", "noise")
+_USED = {
+    "harmonics": (("loop",), "the loop of a contact"),
+    "force": (("function",), "a Universal File"),
+    "measure": (("curve", "backbone"), "amplitudes of a text file at a dof"),
+    "frequency_unit": (("curve", "backbone", "modal backbone"), "frequencies of a text file"),
+    "length_unit": (("curve", "backbone", "loop"), "displacements of a text file"),
+}
+"""What is used of which kinds of files only."""
+_TOLD = {("function", "measure"): "fundamental"}
+"""What is so in any case, and may be said."""
 
 
 class MeasurementTable(Table):
@@ -92,7 +102,25 @@ class MeasurementTable(Table):
             if getattr(self, key) is not None:
                 kind = "a backbone" if not backbone else "amplitudes and forces"
                 raise ValueError(f"{key!r} is for {kind}; leave it out")
+        self._require_used()
         return self
+
+    def _require_used(self) -> None:
+        """Refuse what would change nothing, as a length unit of a file that has SI units."""
+        kind = self._kind
+        for key, (kinds, said) in _USED.items():
+            value, default = getattr(self, key), type(self).model_fields[key].default
+            if kind not in kinds and value not in (default, _TOLD.get((kind, key), default)):
+                raise ValueError(f"{key!r} is for {said}; leave it out")
+
+    @property
+    def _kind(self) -> str:
+        """What the file holds."""
+        if self.mode is not None:
+            return "modal backbone" if self.dof is None else "backbone"
+        if self.contact is not None:
+            return "loop"
+        return "function" if Path(self.file).suffix.lower() in _UFF else "curve"
 
     def read(self, folder: Path) -> Measured:
         """Return the measurement, without a model of its own."""
@@ -104,7 +132,7 @@ class MeasurementTable(Table):
             "noise": self.noise,
             "name": self.name or file.stem,
         }
-        if self.dof is not None and file.suffix.lower() in _UFF:
+        if self.dof is not None and self._kind == "function":
             frfs = read_frf(file)
             if len(frfs) != 1:
                 raise ModelError(f"{file}: holds {len(frfs)} functions; give a file of one")
