@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
@@ -238,7 +238,7 @@ def _result(
         settings=settings,
         arrays=arrays,
         noise_known=known,
-        names=tuple(_name(one, number) for number, one in enumerate(misfit.measured, 1)),
+        names=_names(misfit.measured),
         interrupted=interrupted,
         timings={"total": time.perf_counter() - start},
         counters={"evaluations": misfit.evaluations},
@@ -253,8 +253,15 @@ def _correlation(spread: Float) -> Float:
     return found
 
 
-def _name(test: Measured, number: int) -> str:
-    return f"{number}: {test.of}" if test.name is None else test.name
+def _names(tests: Sequence[Measured]) -> tuple[str, ...]:
+    """Return a name for each test; numbers tell apart those of one name, and those without."""
+    given = [test.name for test in tests]
+    return tuple(
+        f"{number}: {test.of if test.name is None else test.name}"
+        if test.name is None or given.count(test.name) > 1
+        else test.name
+        for number, test in enumerate(tests, 1)
+    )
 
 
 def _tests(measured: Iterable[Measured]) -> tuple[Measured, ...]:

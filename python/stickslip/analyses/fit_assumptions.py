@@ -17,6 +17,8 @@ _MISFIT = 1.5
 """Scatter from which the model does not fit within the noise."""
 _EQUAL = 4.0
 """Rise of the misfit up to which another minimum fits nearly as well."""
+_AT_ZERO = 1e-6
+"""Distance to a bound of zero, relative to that of the bounds, within which a value is there."""
 _APART = 0.05
 """Distance between minima, relative to the values, from which they are two."""
 
@@ -69,7 +71,8 @@ def _at_bounds(arrays: FitArrays, settings: FitSettings) -> list[Diagnostic]:
     found = []
     for (name, ends), value in zip(settings.parameters.items(), arrays.value, strict=True):
         for end in ends:
-            if abs(value - end) <= 1e-3 * abs(end):
+            near = 1e-3 * abs(end) if end else _AT_ZERO * (ends[1] - ends[0])
+            if abs(value - end) <= near:
                 found.append(told("at-bound", parameter=name, value=float(value), bound=end))
     return found
 

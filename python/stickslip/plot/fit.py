@@ -34,7 +34,8 @@ def fit(ax: Axes, /, result: Fit, **options: Unpack[FitOptions]) -> None:
     for number, colour in zip(shown, style.colours(shown.size), strict=True):
         # Peaks may have their frequency among the numbers.
         own = result.of_test(int(number)) & (arrays.quantity != _OMEGA)
-        x, seen, said = arrays.abscissa[own], arrays.observed[own], arrays.predicted[own]
+        x, seen = arrays.abscissa[own], arrays.observed[own]
+        said = np.where(arrays.solved[own], arrays.predicted[own], np.nan)
         if loops:
             x, behind = x * scale.factor, slice(0, 1)
         else:

@@ -293,7 +293,7 @@ def compare_fits(fits: Mapping[str, Fit]) -> FitComparison:
     Raises
     ------
     ModelError
-        If the fits are not of the same numbers.
+        If the fits are not of the same numbers with the same noise.
     """
     if (
         not isinstance(fits, Mapping)
@@ -303,10 +303,13 @@ def compare_fits(fits: Mapping[str, Fit]) -> FitComparison:
         raise ModelError('compare_fits: give fits by name, {"jenkins": ss.fit(...), ...}')
     first = next(iter(fits.values()))
     for name, one in fits.items():
-        same = np.array_equal(one.arrays.observed, first.arrays.observed)
+        same = all(
+            np.array_equal(getattr(one.arrays, what), getattr(first.arrays, what), equal_nan=True)
+            for what in ("observed", "abscissa", "deviation")
+        )
         if not same or one.noise_known != first.noise_known:
             raise ModelError(
-                f"compare_fits: {name!r} was fitted to other numbers than {next(iter(fits))!r}; "
-                "criteria compare fits of the same measurements"
+                f"compare_fits: {name!r} was fitted to other numbers, or with other noise, than "
+                f"{next(iter(fits))!r}; criteria compare fits of the same measurements"
             )
     return FitComparison(MappingProxyType(dict(fits)))
