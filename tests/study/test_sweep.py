@@ -50,6 +50,33 @@ def test_frequencies_of_their_own_stand_side_by_side():
 
 
 @pytest.mark.parametrize(
+    ("analysis", "along"),
+    [
+        (lambda one: ss.exact_response(one, [150.0, 170.0, 200.0]), "position"),
+        (lambda one: ss.forced_response(one, (170, 195), 3), "position"),
+        (lambda one: ss.nonlinear_modes(one, amplitude=(1e-4, 1e-2), harmonics=3), "mode_point"),
+        (lambda one: ss.transient(one, omega=170.0, periods=3), "period"),
+    ],
+)
+def test_shorter_results_are_filled_up(analysis, along, tmp_path):
+    both = ss.sweep(snecma_beam(), analysis, slip_force=[100.0, 246.0])
+    data, members = both.to_dataset(), [one.to_dataset() for one in both.results]
+    assert along in data.sizes
+    sizes = [{dim: one.sizes[dim] for dim in one.dims} for one in members]
+    assert sizes[0] != sizes[1]
+    for place, one in enumerate(members):
+        assert not one.data_vars.keys() - data.data_vars.keys()
+        for name, variable in one.data_vars.items():
+            found = data[name][place].values
+            own = tuple(slice(size) for size in variable.shape)
+            np.testing.assert_array_equal(found[own], variable.values)
+            if found.dtype.kind in "fc":
+                found[own] = np.nan
+                assert np.isnan(found).all()
+    both.export(tmp_path / "both.mat")
+
+
+@pytest.mark.parametrize(
     "analysis",
     [
         curve,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from importlib import import_module
@@ -108,7 +108,8 @@ class Sweep(Result):
         """Return the numbers along the parameter, a dimension with its values and its unit.
 
         Results with frequencies of their own are put side by side: the dimension is then
-        "position", and "omega" a variable; what is missing is not-a-number.
+        "position", and "omega" a variable. Of shorter results what is missing is not-a-number, so
+        that whole numbers and codes along such dimensions are floating-point numbers.
         """
         return self._family() if derived else self.record().to_dataset()
 
@@ -131,10 +132,8 @@ class Sweep(Result):
             self.values,
             {"units": self.unit, "long_name": self.parameter.replace("_", " ")},
         )
-        if not all(_same_axes(members[0], one) for one in members):
-            members = [_padded(one) for one in members]
         family = xr.concat(
-            members,
+            _aligned(members),
             dim=self.parameter,
             data_vars="all",
             coords="minimal",
@@ -274,21 +273,48 @@ def _unpacked(dataset: Stored, prefix: str) -> Record:
     return Record(own, json.loads(str(own.pop("attributes").values)))
 
 
-def _same_axes(one: Dataset, other: Dataset) -> bool:
-    return dict(one.sizes) == dict(other.sizes) and all(
-        np.array_equal(index.values, other.indexes[name].values)
-        for name, index in one.indexes.items()
-        if name in other.indexes
-    )
+def _aligned(members: Sequence[Dataset]) -> list[Dataset]:
+    """Return members of which shorter ones can be filled up with not-a-number.
+
+    Frequencies of their own become a variable along positions, and whole numbers such that may be
+    missing.
+    """
+    if not _unequal(members):
+        return list(members)
+    members = [_by_position(one) for one in members]
+    unequal, aligned = _unequal(members), list[Dataset]()
+    for one in members:
+        counted = {dim: np.arange(one.sizes[dim]) for dim in unequal - set(one.indexes)}
+        own = one.assign_coords({dim: counted[dim] for dim in counted if dim in one.dims})
+        whole = {
+            name: data.astype(np.float64, keep_attrs=True)
+            for name, data in own.data_vars.items()
+            if data.dtype.kind in "biu" and unequal.intersection(data.dims)
+        }
+        aligned.append(own.assign(whole))
+    return aligned
 
 
-def _padded(one: Dataset) -> Dataset:
+def _unequal(members: Sequence[Dataset]) -> set[Hashable]:
+    """Return the dimensions along which members differ."""
+    axes = [
+        {dim: one.indexes[dim].values if dim in one.indexes else size for dim, size in own}
+        for one in members
+        for own in [one.sizes.items()]
+    ]
+    every = dict.fromkeys(dim for own in axes for dim in own)
+    return {
+        dim
+        for dim in every
+        if not all(np.array_equal(own.get(dim, 0), axes[0].get(dim, 0)) for own in axes)
+    }
+
+
+def _by_position(one: Dataset) -> Dataset:
     """Return a member whose frequencies are a variable along positions."""
-    kept = [name for name, data in one.data_vars.items() if data.dtype.kind in "fc"]
-    own = one[kept]
-    if "omega" in own.dims:
-        omega = own["omega"]
-        own = own.drop_vars("omega").rename_dims(omega="position")
-        own = own.assign(omega=("position", omega.values, omega.attrs))
-        own = own.assign_coords(position=np.arange(omega.size))
-    return own
+    if "omega" not in one.dims:
+        return one
+    omega = one["omega"]
+    own = one.drop_vars("omega").rename_dims(omega="position")
+    own = own.assign(omega=("position", omega.values, omega.attrs))
+    return own.assign_coords(position=np.arange(omega.size))
