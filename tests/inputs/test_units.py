@@ -6,6 +6,7 @@ import pytest
 
 import stickslip as ss
 from stickslip import ModelError
+from stickslip.settings.motion import BasinKeys
 from stickslip.units import quantity
 
 
@@ -132,6 +133,16 @@ def _two_masses(**changes):
     return ss.Model(structure, [ss.Jenkins("a", **values)], [ss.Force("b", "20 N", "90 deg")])
 
 
+def _facing(tolerance):
+    """Two shells of which one lies a millimetre above the other."""
+    square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]) * 1e-3
+    cells = [("quad", [[0, 1, 2, 3], [4, 7, 6, 5]])]
+    raised = square + np.array([0, 0, 1e-3])
+    mesh, lower = ss.Mesh(np.vstack([square, raised]), cells), np.arange(8) < 4
+    pair = ss.ContactInterface.from_surfaces
+    return pair(mesh, lower, mesh, ~lower, tolerance=tolerance)
+
+
 @pytest.mark.parametrize(
     ("text", "number"),
     [
@@ -155,6 +166,14 @@ def _two_masses(**changes):
         (lambda: ss.damper_curve(_two_masses(), dof="b", slip_force=["2 kN"]).values[0], 2e3),
         (lambda: ss.transient(_two_masses(), omega="10 Hz", periods=3).omega, 20 * np.pi),
         (lambda: ss.Measurement(["10 Hz"], "a", ["2 um"], noise="1 um").noise, 1e-6),
+        (lambda: ss.Optimum("a", bounds=("2 N", "1 kN")).bounds[1], 1e3),
+        (lambda: ss.nonlinear_modes(_two_masses(), amplitude=[1e-4, 1e-3], harmonics=1)
+            .forced_response(ss.Force("a", "1 N"), ["9 Hz"]).omega[0], 18 * np.pi),
+        (lambda: ss.ModalForces([[1.0, 2.0], [3.0, 6.0]], speeds=[0.0, 20 * np.pi])
+            .at_speed("5 Hz").values[1], 4.0),
+        (lambda: BasinKeys.of(
+            axes={"a": ["0 mm", "1 mm"], "b": [0.0, 1.0]}).axes["a"][1], 1e-3),
+        (lambda: _facing("2 mm").gap.max(), 1e-3),
     ],
 )  # fmt: skip
 def test_python_takes_texts_with_units(text, number):

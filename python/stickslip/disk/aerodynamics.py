@@ -13,9 +13,10 @@ from typing import NamedTuple, Protocol, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.checks import as_list, brief, real_number
+from stickslip.checks import as_list, brief
 from stickslip.errors import ModelError
 from stickslip.model.structure import Structure
+from stickslip.units import physical_number
 
 Values: TypeAlias = ArrayLike | Mapping[int, complex]
 """A number per nodal diameter: those of 0 to n-1, or by the signed nodal diameter."""
@@ -153,7 +154,7 @@ class ModalForces:
 
         Raises ModelError if there are no speeds, or it lies outside them.
         """
-        rate = real_number(speed, "speed")
+        rate = physical_number(speed, "rad/s", "speed")
         if self.speeds is None:
             raise ModelError("at_speed: these modal forces have no speeds; give speeds=[...]")
         speeds, values = np.asarray(self.speeds), np.asarray(self.values)

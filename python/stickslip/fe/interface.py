@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.checks import Matrix, brief, listed, members, real_number, text, unknown
+from stickslip.checks import Matrix, brief, listed, members, text, unknown
 from stickslip.errors import ModelError
 from stickslip.fe.mesh import Mesh, Part, mesh_of
 from stickslip.fe.solid import Solid
 from stickslip.fe.sparse import symmetric_sparse
 from stickslip.fe.surface import Places, Surface
 from stickslip.model.coulomb import Coulomb
+from stickslip.units import physical_number
 
 if TYPE_CHECKING:
     from stickslip.results.static_response import StaticResponse
@@ -129,7 +130,7 @@ class ContactInterface:
         second = mesh_of(other_mesh, f"{_ENTRY}: other_mesh").surface(other_surface)
         reach = _REACH * min(first.shortest_edge, second.shortest_edge)
         if tolerance is not None:
-            reach = real_number(tolerance, f"{_ENTRY}: tolerance")
+            reach = physical_number(tolerance, "m", f"{_ENTRY}: tolerance")
             if reach <= 0.0:
                 raise ModelError(f"{_ENTRY}: tolerance {reach:g} m must be positive")
         here, there = _pairs(first.points, second.points, reach)

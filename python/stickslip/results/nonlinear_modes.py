@@ -122,7 +122,7 @@ class NonlinearModes(PeriodicMotions):
         """
         self._require_rest("forced_response")
         driven = force_vector(self, forces)
-        given = numbers(omega, "give finite frequencies above 0 rad/s", positive)
+        given = numbers(omega, "give finite frequencies above 0 rad/s", positive, "rad/s")
         return synthesized(self, driven, given)
 
     def peaks(self, forces: Force | Sequence[Force], level: ArrayLike) -> SynthesizedPeaks:

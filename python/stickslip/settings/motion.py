@@ -140,7 +140,8 @@ def _axes(given: object) -> dict[Axis, list[float]]:
         shown = f"{len(given)} axes" if isinstance(given, Mapping) else brief(given)
         raise EntryError("", f': {shown}; give two, {{"tip": [...], "damper": [...]}}')
     return {
-        axis: numbers(values, "give finite numbers in m").tolist() for axis, values in given.items()
+        axis: numbers(values, "give finite numbers in m", unit="m").tolist()
+        for axis, values in given.items()
     }
 
 

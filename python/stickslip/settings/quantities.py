@@ -10,11 +10,23 @@ import numpy as np
 from numpy.typing import ArrayLike
 from pydantic import Field, PlainSerializer
 
-from stickslip.checks import brief, choice, members, real_number, set_fields, text, whole_number
+from stickslip.checks import brief, choice, members, set_fields, text, whole_number
 from stickslip.errors import EntryError, ModelError
-from stickslip.settings.entries import ByKey, Dof, Factor, Index, Measure, Some, Table, span_of
+from stickslip.settings.entries import (
+    ByKey,
+    Dof,
+    Factor,
+    Index,
+    Measure,
+    Number,
+    Some,
+    Table,
+    Text,
+    span_of,
+)
 from stickslip.settings.ranges import Or, PeakSpan, numbers, positive
-from stickslip.settings.variation import Parameter
+from stickslip.settings.variation import Parameter, unit_of
+from stickslip.units import physical_number
 
 _MEASURES = get_args(get_args(Measure)[0])
 
@@ -106,7 +118,8 @@ class Optimum:
             given = members(self.bounds, "optimum: bounds", "(lowest, highest)")
             if len(given) != 2:
                 raise ModelError(f"optimum: bounds: {brief(self.bounds)}; give (lowest, highest)")
-            low, high = (real_number(one, "optimum: bounds") for one in given)
+            unit = unit_of(self.parameter)
+            low, high = (physical_number(one, unit, "optimum: bounds") for one in given)
             if not 0.0 < low < high:
                 raise ModelError(f"optimum: bounds: ({low:g}, {high:g}); give 0 < lowest < highest")
             set_fields(self, bounds=(low, high))
@@ -191,7 +204,9 @@ class OptimumTable(Table):
     kind: Literal["optimum"] = Field(description="What is asked.")
     dof: Dof = Field(description="The degree of freedom.")
     parameter: Parameter = Field(default="slip_force", description="What is varied.")
-    bounds: Some[Factor] | None = Field(default=None, description="Values to look between.")
+    bounds: Some[Number | Text] | None = Field(
+        default=None, description="Values to look between, in SI units or with one."
+    )
     omega: PeakSpan | None = Field(default=None, description="Range of frequencies.")
     measure: Measure = Field(default="half_range", description="Measure of the amplitude.")
 
