@@ -45,3 +45,25 @@ def test_damper_curves_find_the_branch_behind_a_fold(behind_a_gap):
     damper = ss.damper_curve(behind_a_gap, friction=[0.44637], dof="d0", omega=SPAN)
     assert damper.amplitude[0] == pytest.approx(peak.amplitude, rel=2e-3)
     assert damper.omega[0] == pytest.approx(peak.omega, rel=2e-3)
+
+
+def hardening(level=1.0, stiffness=1e9):
+    structure = ss.Structure([[1.0]], [[1e4]], ss.ModalDamping(0.01), ["x"])
+    cubic = ss.Cubic("x", stiffness=stiffness, name="cubic")
+    return ss.Model(structure, [cubic], [ss.Force("x", level)])
+
+
+def test_slopes_of_a_peak_beside_a_fold_are_those_of_its_branch():
+    """At the frequency of the peak the lower branch has a motion, too, with slopes of its own."""
+    keys = {"omega": (60.0, 200.0), "harmonics": 5, "tolerance": 1e-4}
+    curve = ss.forced_response(hardening(), **keys)
+    assert curve.folds.size == 2
+
+    def height(level, stiffness):
+        return ss.forced_response(hardening(level, stiffness), **keys).peak("x").amplitude
+
+    by_level = (height(1.01, 1e9) - height(0.99, 1e9)) / 0.02
+    by_stiffness = (height(1.0, 1.01e9) - height(1.0, 0.99e9)) / 0.02e9
+    assert curve.peak_sensitivity("x", parameter="level") == pytest.approx(by_level, rel=0.01)
+    found = curve.peak_sensitivity("x")
+    assert found["cubic", "stiffness"] == pytest.approx(by_stiffness, rel=0.01)

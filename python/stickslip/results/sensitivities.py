@@ -10,13 +10,16 @@ from stickslip import _core
 from stickslip.checks import listed, text, unknown
 from stickslip.errors import ModelError
 from stickslip.model import Model, PointRef
-from stickslip.results.arrays import Arrays, Float, Measure, constant
+from stickslip.results.arrays import Arrays, Float, Measure, amplitude_of, constant
 from stickslip.results.contact_motion import ContactMotion
 from stickslip.results.periodic import key_of
 from stickslip.settings.balance import BalanceSettings
 
 COMMON = {"level": "m", "omega": "m s/rad"}
 """What belongs to no contact: a factor on all forces, and the excitation frequency."""
+
+_SAME = 0.05
+"""Relative difference of two amplitudes up to which they are those of one branch."""
 
 Cause: TypeAlias = "str | tuple[int, int | None, str]"
 
@@ -113,7 +116,8 @@ class Sensitivities(ContactMotion):
         """Return the derivative of the height of the peak.
 
         The frequency of the peak moves with the parameter, but the amplitude is stationary in it:
-        the derivative of the peak is that of the amplitude at its frequency.
+        the derivative of the peak is that of the amplitude at its frequency. Of a curve that folds
+        it follows from the computed points around the peak, and is as exact as they are close.
 
         Raises ModelError as `sensitivity` and `ForcedResponse.peak`.
 
@@ -143,10 +147,40 @@ class Sensitivities(ContactMotion):
             BalanceSettings.of(**self.settings.part(BalanceSettings)),
             None,
         )
-        slopes = self._slopes(Arrays.of(there), dof, list(causes.values()), measure)[0]
+        arrays = Arrays.of(there)
+        slopes = self._slopes(arrays, dof, list(causes.values()), measure)[0]
+        if self.model.problem.laws_not_monotone and not np.isinf(peak.amplitude):
+            height = amplitude_of(arrays.displacement[:, :, 0], measure)[0]
+            other = not np.isclose(height, peak.amplitude, rtol=_SAME, atol=0.0)
+            if other or self.arrays.fold.any():
+                slopes = self._along(dof, list(causes.values()), measure)
         if parameter is None:
             return {name: float(slope) for name, slope in zip(causes, slopes, strict=True)}
         return float(slopes.sum())
+
+    def _along(self, dof: str, causes: list[Cause], measure: Measure) -> Float:
+        """Return the derivatives of the height of the peak of a branch, from its highest points.
+
+        What moves the top of a curve by v, across and upward, changes the amplitude at a frequency
+        by v_up - a v_across, a being its slope: also beside a fold, where both have no bound.
+        """
+        amplitude = self.amplitude(dof, measure)
+        best = int(np.nanargmax(amplitude))
+        apart = self.arrays.jump | self.arrays.further
+        near = [best]
+        if best and not apart[best]:
+            near.insert(0, best - 1)
+        if best + 1 < amplitude.size and not apart[best + 1]:
+            near.append(best + 1)
+        near = [at for at in near if np.isfinite(amplitude[at])]
+        found = self._slopes(self.arrays, dof, ["omega", *causes], measure)[near]
+        if not 0 < best < amplitude.size - 1 or len(near) == 1:
+            return found[near.index(best), 1:]
+        steep = found[:, 0] * self.omega[best] / amplitude[best]
+        weight = 1.0 / np.hypot(1.0, steep)[:, np.newaxis]
+        rows = weight * np.column_stack([np.ones(len(near)), -steep])
+        moved: Float = np.linalg.lstsq(rows, weight * found[:, 1:], rcond=None)[0][0]
+        return moved
 
     def _require_balance(self) -> None:
         if self.kind != "forced_response":
