@@ -67,3 +67,17 @@ def test_slopes_of_a_peak_beside_a_fold_are_those_of_its_branch():
     assert curve.peak_sensitivity("x", parameter="level") == pytest.approx(by_level, rel=0.01)
     found = curve.peak_sensitivity("x")
     assert found["cubic", "stiffness"] == pytest.approx(by_stiffness, rel=0.01)
+
+
+@pytest.mark.slow
+def test_orbits_of_other_motions_certify_nothing(behind_a_gap):
+    """Orbits begin at the lower branch, and upper points have no such error."""
+    curve = ss.forced_response(behind_a_gap, (80.0, 110.0), 7, tolerance=1e-2, stability=False)
+    assert curve.folds.size == 2
+    top = int(curve.amplitude("d0").argmax())
+    seen = ss.certify(curve, [0, top - 1, top, curve.omega.size - 1]).certificate
+    assert seen.status == ("converged", "other motion", "other motion", "converged")
+    assert np.isnan(seen.amplitude[1:3]).all()
+    assert np.isnan(seen.waveform_error[1:3]).all()
+    assert np.nanmax(np.abs(seen.relative)) < 1e-3
+    assert seen.worst.position in (0, curve.omega.size - 1)

@@ -13,9 +13,10 @@ from stickslip.analyses.run import Progress, Run, share
 from stickslip.checks import brief, members
 from stickslip.errors import Interrupted, ModelError
 from stickslip.results import ForcedResponse
-from stickslip.results.arrays import Float, Int
+from stickslip.results.arrays import Bool, Float, Int
 from stickslip.results.certificate import Certificate
 from stickslip.results.exact_response import ExactResponse
+from stickslip.results.status import Status
 from stickslip.settings.orbits import CertifySettings, ExactSettings
 from stickslip.settings.settings import configured
 
@@ -24,6 +25,8 @@ _SAMPLES = 1024
 
 # Share of the largest displacement, means included, below which a difference is rounding.
 _NO_ERROR = 1e-12
+# Share of the distance from its own point at which an orbit is that of another part of the curve.
+_NEARER = 0.5
 # Share of the progress that the orbits are given; following them through the period takes the rest.
 _ORBITS = 0.5
 
@@ -136,17 +139,46 @@ def _certificate(
     # Beside a large mean, or a large motion elsewhere, less than this is rounding, not an error.
     error[np.abs(error) <= _NO_ERROR * largest.max(axis=1, keepdims=True)] = 0.0
     automatic = result.settings.harmonics == "auto"
+    code, other = exact.arrays.status.copy(), _of_other_motions(result, exact, indices, curve)
+    code[other] = Status.OTHER_MOTION.code
+    apart = np.where(other[:, np.newaxis], np.nan, apart)
+    amplitude[other] = error[other] = np.nan
     return Certificate(
         dofs=exact.dofs,
         tolerance=result.settings.tolerance if automatic else None,
         indices=indices,
         omega=exact.arrays.omega,
-        code=exact.arrays.status,
+        code=code,
         amplitude=amplitude,
         error=error,
         waveform_error=apart,
         estimate=estimate,
     )
+
+
+def _of_other_motions(
+    result: ForcedResponse, exact: ExactResponse, indices: Int, curve: Float
+) -> Bool:
+    """Return at which points the orbit belongs to another part of a curve that folds, (p,).
+
+    Orbits begin at the motion that the balance finds at their frequency, which may be another one
+    than that of the curve.
+    """
+    found = np.zeros(indices.size, dtype=np.bool_)
+    if not result.arrays.fold.any():
+        return found
+    omega, whole = result.omega, np.stack([result.amplitude(dof) for dof in exact.dofs], axis=1)
+    joined = ~(result.arrays.jump | result.arrays.further)[1:] & (np.diff(omega) != 0.0)
+    orbit = 0.5 * (exact.arrays.range[..., 1] - exact.arrays.range[..., 0])
+    for place, index in enumerate(indices.tolist()):
+        apart = omega - omega[index]
+        across = np.flatnonzero(joined & (apart[:-1] * apart[1:] <= 0.0))
+        across = across[(across != index) & (across + 1 != index)]
+        share = (apart[across] / (apart[across] - apart[across + 1]))[:, np.newaxis]
+        others = (1.0 - share) * whole[across] + share * whole[across + 1]
+        nearest = np.abs(others - orbit[place]).max(axis=1).min(initial=np.inf)
+        found[place] = nearest < _NEARER * np.abs(curve[place] - orbit[place]).max()
+    return found
 
 
 def _require_balance(result: object) -> None:

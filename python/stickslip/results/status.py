@@ -101,6 +101,11 @@ class Status(Ending):
         "balance assumes agrees with it. See one such motion with exact_response, or follow the "
         "history with transient from the state at rest.",
     )
+    OTHER_MOTION = (
+        "other motion",
+        "Not compared: the exact orbit that was found is another one of several motions at this "
+        "omega. Certify points where there is one motion, or follow this one with transient.",
+    )
 
     @property
     def solved(self) -> bool:
