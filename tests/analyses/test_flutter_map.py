@@ -1,10 +1,13 @@
 """Travelling waves in a flow: given damping comes back, limit cycles, stability in the ring."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from scipy.linalg import eigh
 
 import stickslip as ss
+from stickslip.results.flutter_map import FATES, FlutterMap, _crossings
 
 
 def one_dof(sectors, contact, coupling=4e3, damping=0.5, flow=0.0):
@@ -280,3 +283,40 @@ def test_waves_of_opposite_sense_share_a_mode_where_they_meet_the_same_sector():
         each = [ss.nonlinear_modes(one, nodal_diameter=d, harmonics=5, **keys) for d in waves]
         assert not whole.cycles()
         assert whole.counters["evaluations"] == sum(mode.counters["evaluations"] for mode in each)
+
+
+@pytest.mark.parametrize(
+    ("total", "stable", "unstable"),
+    [
+        ([-1.0, 1.0, 1.0, -1.0], 1.5, 3.5),
+        ([1.0, -1.0, 1.0, -1.0], 2.5, 3.5),  # what falls first is unstable below the stable one
+        ([1.0, -1.0, 1.0, 1.0], 2.5, np.nan),
+        ([1.0, 1.0, 1.0, -1.0], np.nan, 3.5),
+    ],
+)
+def test_the_unstable_cycle_lies_beyond_the_stable_one(total, stable, unstable):
+    found = _crossings(np.array(total), np.exp([1.0, 2.0, 3.0, 4.0]))
+    np.testing.assert_allclose(np.log(found), [stable, unstable])
+
+
+@pytest.mark.parametrize(
+    ("rest", "slopes", "fate"),
+    [
+        (1.0, [], "decays"),
+        (-1.0, [], "grows"),
+        (-1.0, [1.0], "limit cycle"),
+        (-1.0, [1.0, -1.0], "limit cycle, kick"),
+        (-1.0, [1.0, -1.0, 1.0], "limit cycle"),
+        (1.0, [-1.0], "kick"),
+        # small motions die out, so that not every amplitude comes to the cycle
+        (1.0, [-1.0, 1.0], "decays, limit cycle"),
+        (1.0, [-1.0, 1.0, -1.0], "decays, limit cycle, kick"),
+    ],
+)
+def test_what_becomes_of_a_wave_follows_from_its_crossings(rest, slopes, fate):
+    cycles = [SimpleNamespace(slope=slope) for slope in slopes]
+    wave = SimpleNamespace(
+        _place=lambda d: d, cycles=lambda place: cycles, rest_ratio=np.array([rest])
+    )
+    assert FlutterMap.fate(wave, 0) == fate
+    assert fate in FATES

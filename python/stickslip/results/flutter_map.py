@@ -16,13 +16,24 @@ from stickslip.results.fields import Columns, Complex, Shown, column
 from stickslip.results.result import ColumnResult
 from stickslip.settings.flutter import FlutterSettings
 
-Fate: TypeAlias = Literal["decays", "limit cycle", "kick", "limit cycle, kick", "grows"]
+Fate: TypeAlias = Literal[
+    "decays",
+    "limit cycle",
+    "kick",
+    "limit cycle, kick",
+    "decays, limit cycle",
+    "decays, limit cycle, kick",
+    "grows",
+]
 
 FATES: Mapping[Fate, str] = {
     "decays": "dies out from every amplitude",
     "limit cycle": "settles on a limit cycle from every amplitude",
     "kick": "dies out, or grows without bound from beyond an unstable limit cycle",
     "limit cycle, kick": "settles on a limit cycle, or grows without bound from beyond another",
+    "decays, limit cycle": "dies out, or settles on a limit cycle from beyond an unstable one",
+    "decays, limit cycle, kick": "dies out, settles on a limit cycle, or grows without bound, as "
+    "far as it is beyond unstable ones",
     "grows": "grows without bound",
 }
 """What becomes of a wave by itself, within the amplitudes that were computed."""
@@ -205,9 +216,11 @@ class FlutterMap(ColumnResult):
         rest = self.rest_ratio[place] >= 0.0
         if not rises:
             return "decays" if rest else "grows"
-        if not rises[-1]:
-            return "limit cycle, kick" if any(rises) else "kick"
-        return "limit cycle"
+        if not any(rises):
+            return "kick"
+        if rises[0]:
+            return "limit cycle" if rises[-1] else "limit cycle, kick"
+        return "decays, limit cycle" if rises[-1] else "decays, limit cycle, kick"
 
     def limit_amplitude(self, dof: str, aerodynamic_ratio: ArrayLike) -> Float:
         """Return limit-cycle amplitudes over nodal diameter and aerodynamic damping [m].
@@ -266,6 +279,8 @@ def _crossings(total: NDArray[np.float64], size: NDArray[np.float64]) -> Sequenc
         return np.nan, np.nan
     rises = np.flatnonzero((total[:-1] < 0.0) & (total[1:] >= 0.0))
     falls = np.flatnonzero((total[:-1] >= 0.0) & (total[1:] < 0.0))
+    # What falls before it rises is unstable below the stable one.
+    falls = falls[falls > rises[0]] if rises.size else falls
     ends = []
     for ways in (rises, falls):
         if not ways.size:
