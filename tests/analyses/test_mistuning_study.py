@@ -1,6 +1,7 @@
 """Mistuning studies: factors of the table, peaks that nothing misses, the same bits every time."""
 
 import pickle
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -190,6 +191,25 @@ def test_shapes_choice_and_statistics(small):
     assert own.low < np.median(chosen) == own.value < own.high
     assert small.counters["disks"] == 160
     assert "160 of 160 disks found" in repr(small)
+
+
+@pytest.mark.slow
+def test_disks_that_were_not_found_may_have_any_factor(small):
+    """Those with the highest factors are the hardest ones."""
+    where = {"deviation": 0.05, "coupling": 3e3}
+    whole = small.percentile("tip", 80.0, method="empirical", **where)
+    highest = np.argsort(small.amplification("tip")[1, 0])[-3:]
+    for status in (Status.STALLED, Status.NOT_COMPUTED):
+        amplitude, code = small.arrays.amplitude.copy(), small.arrays.status.copy()
+        amplitude[1, 0, highest], code[1, 0, highest] = np.nan, status.code
+        arrays = replace(small.arrays, amplitude=amplitude, status=code)
+        found = replace(small, arrays=arrays).percentile("tip", 80.0, method="empirical", **where)
+        assert found.value < whole.value
+        if status == Status.STALLED:
+            assert found.low < whole.low
+            assert found.high >= whole.high
+        else:
+            assert found.high < whole.high
 
 
 @pytest.mark.slow

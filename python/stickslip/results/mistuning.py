@@ -153,11 +153,15 @@ class MistuningStudy(ColumnResult):
 
         In the order of the patterns, those that were not found left out, shape (found,).
         """
-        row = self.amplification(dof)[
+        row = self.amplification(dof)[self._chosen(deviation, coupling)]
+        return constant(row[np.isfinite(row)])
+
+    def _chosen(self, deviation: float | None, coupling: float | None) -> tuple[int, int]:
+        """Return the positions of one deviation and one coupling."""
+        return (
             _one(deviation, self.deviation, "deviation"),
             _one(coupling, self.coupling_stiffness, "coupling"),
-        ]
-        return constant(row[np.isfinite(row)])
+        )
 
     def weibull(
         self,
@@ -197,11 +201,15 @@ class MistuningStudy(ColumnResult):
             From 0 to 100, exclusive: 99.9.
         method : {"weibull", "empirical"}, optional
             From the fitted distribution, also beyond the data; or from the factors themselves.
+            Those of disks whose peak was not found may have been any: they make its interval wider.
         """
         chosen = choice(method, "method", ("weibull", "empirical"))
         if chosen == "empirical":
-            factors = self.factors(dof, deviation=deviation, coupling=coupling)
-            return empirical_percentile(factors, q, confidence)
+            place = self._chosen(deviation, coupling)
+            row = self.amplification(dof)[place]
+            sought = self.arrays.status[place][:, self._dof(dof)] != Status.NOT_COMPUTED.code
+            missing = int((sought & ~np.isfinite(row)).sum())
+            return empirical_percentile(row, q, confidence, missing)
         fit = self.weibull(dof, deviation=deviation, coupling=coupling, confidence=confidence)
         return fit.percentile(q)
 
