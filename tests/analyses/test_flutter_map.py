@@ -320,3 +320,10 @@ def test_what_becomes_of_a_wave_follows_from_its_crossings(rest, slopes, fate):
     )
     assert FlutterMap.fate(wave, 0) == fate
     assert fate in FATES
+
+
+def test_what_friction_holds_of_a_wave_that_was_not_found_is_not_known():
+    ratio = np.array([[0.01, 0.02], [np.nan, np.nan]])
+    arrays = SimpleNamespace(participation=np.ones((2, 2)))
+    found = FlutterMap.held_ratio.fget(SimpleNamespace(disk_ratio=ratio, arrays=arrays))
+    np.testing.assert_array_equal(found, [-0.02, np.nan])

@@ -124,3 +124,42 @@ def test_nothing_to_draw(ax):
 )
 def test_prefixes(value, text):
     assert prefixed(value, "J") == text
+
+
+def _block(**keys):
+    values = {"normal": [0, 0, 1], "tangential_stiffness": 1e5, "normal_stiffness": 1e5} | keys
+    structure = ss.Structure(np.eye(3), 1e6 * np.eye(3), ss.ModalDamping(0.05), ["x", "y", "z"])
+    return ss.Model(structure, [ss.Coulomb(["x", "y", "z"], **values)], [ss.Force("x", 2.0)])
+
+
+@pytest.mark.parametrize(
+    ("keys", "said"),
+    [
+        ({"friction": 0.3, "gap": 1e-3}, "open"),
+        ({"friction": 0.0, "preload": 10.0}, "slips without friction"),
+        ({"friction": 0.3, "preload": 10.0}, "sticks"),
+    ],
+)
+def test_a_loop_without_work_says_why(ax, keys, said):
+    plot.hysteresis(ss.forced_response(_block(**keys), [110.0], 3), 0, 0, ax=ax)
+    assert legend(ax) == [f"t1, {said}", f"t2, {said}"]
+
+
+def test_a_spring_does_not_stick(ax):
+    structure = ss.Structure([[1.0]], [[1e4]], ss.ModalDamping(0.05), ["x"])
+    stop = ss.Stop("x", stiffness=2e4, gap=1e-3)
+    model = ss.Model(structure, [stop], [ss.Force("x", 2.0)])
+    plot.hysteresis(ss.forced_response(model, [110.0], 9), 0, 0, ax=ax)
+    assert ax.get_title() == "stop at ω = 110 rad/s: elastic"
+
+
+def test_the_sum_of_forces_that_does_not_vanish_is_shown():
+    structure = ss.Structure(np.eye(2), 1e6 * np.eye(2), ss.ModalDamping(0.05), ["x", "y"])
+    held = ss.StructuralDamper(["x", "y"], stiffness=np.diag([1e5, 2e5]), slip_forces=[1.0, 1.0])
+    model = ss.Model(structure, [held], [ss.Force("x", 200.0), ss.Force("y", 100.0)])
+    *_, whole = plot.contact_forces(ss.forced_response(model, [900.0], 9), 0, 0)
+    low, high = whole.get_ylim()
+    largest = np.abs(whole.lines[0].get_ydata()).max()
+    assert largest > 1.0
+    assert low < -largest < largest < high
+    plt.close("all")

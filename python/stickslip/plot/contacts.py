@@ -198,8 +198,10 @@ def contact_forces(
         dof = one.dofs[point] if len(one.dofs) == one.points else " - ".join(map(str, one.dofs))
         ax.set_ylabel(f"{point}: {dof or 'ground'}\nforce [N]")
     if one.points > 1:
-        axes[-1].plot(time, forces.sum(axis=1), color=style.BLUE, lw=1.6)
-        edge = 0.05 * float(np.abs(forces).max())
+        whole = forces.sum(axis=1)
+        axes[-1].plot(time, whole, color=style.BLUE, lw=1.6)
+        # The rounding of a sum that vanishes is no motion.
+        edge = max(0.05 * float(np.abs(forces).max()), 1.05 * float(np.abs(whole).max()))
         axes[-1].set(ylim=(-edge, edge), ylabel="sum\nforce [N]")
     _finish(axes, f"{result.model.contact_names[number]}, {at(result, index)}", 2)
     return axes
@@ -257,14 +259,26 @@ def _loops(
     lost = np.atleast_1d(result.dissipation(contact)[index])
     sides = (result.contact_waveform, result.contact_force)
     u, f = (_closed(of(contact, index, samples).reshape(samples, len(lost), -1)) for of in sides)
+    slips, opens = (
+        np.atleast_1d(of(contact)[index]) for of in (result.slip_fraction, result.open_fraction)
+    )
     for point, work in enumerate(lost):
-        label = f"{style.prefixed(float(work), 'J')} per cycle" if work else "sticks"
+        label = f"{style.prefixed(float(work), 'J')} per cycle"
+        if not work:
+            label = _idle(slips[point], opens[point]) if own.slips else "elastic"
         if work and own.tangential > 1:
             label += " in all directions"
         label = f"point {point}: {label}" if len(lost) > 1 else label
         for part in range(own.tangential):
             named = f"{own.components[part]}, {label}" if own.components else label
             yield u[:, point, part], f[:, point, part], named
+
+
+def _idle(slips: float, opens: float) -> str:
+    """Say what a point does that loses no work, by the shares of the period."""
+    if opens >= 1.0:
+        return "open"
+    return ("slips without friction" if slips else "sticks") + (" and opens" if opens else "")
 
 
 def _draw_slip_limits(ax: Axes, limits: Sequence[float], point: int | None) -> None:

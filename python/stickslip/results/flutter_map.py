@@ -251,9 +251,11 @@ class FlutterMap(ColumnResult):
 
     @property
     def held_ratio(self) -> Float:
-        """Largest negative damping ratio of the flow at rest that friction holds, shape (n,)."""
-        share = self.disk_ratio / self.arrays.participation
-        return constant(-np.nanmax(share, axis=1, initial=-np.inf))
+        """Largest negative damping ratio of the flow at rest that friction holds, shape (n,).
+
+        Not-a-number of waves that were not found.
+        """
+        return constant(-np.fmax.reduce(self.disk_ratio / self.arrays.participation, axis=1))
 
     def _place(self, diameter: int) -> int:
         n = self.rest_ratio.size

@@ -42,7 +42,7 @@ class SynthesizedResponse(ModeMotions):
     def __repr__(self) -> str:
         return (
             f"SynthesizedResponse({self.omega.size} frequencies of mode "
-            f"{self.mode.settings.mode}, error up to {np.nanmax(self.error_indicator):.2g})"
+            f"{self.mode.settings.mode}, error up to {np.fmax.reduce(self.error_indicator):.2g})"
         )
 
     def coefficients(self, dof: str) -> Complex:
@@ -76,7 +76,7 @@ class SynthesizedPeaks(SynthesizedResponse):
     def __repr__(self) -> str:
         return (
             f"SynthesizedPeaks({self.omega.size} factors of mode {self.mode.settings.mode}, error "
-            f"up to {np.nanmax(self.error_indicator):.2g})"
+            f"up to {np.fmax.reduce(self.error_indicator):.2g})"
         )
 
     def coefficients(self, dof: str) -> Complex:
