@@ -262,3 +262,22 @@ def load(damper):
 def test_dampers_in_space_are_not_drawn():
     with pytest.raises(ss.ModelError, match="only those in a plane are drawn"):
         solid().plot(ax=Figure().add_subplot())
+
+
+def test_degrees_of_freedom_begin_with_the_names_of_the_bodies():
+    values = {"friction": 0.3, "tangential_stiffness": 1e5, "normal_stiffness": 2e5}
+    up = [ss.ContactPoint((0.0, 1.0))]
+    bodies = {"pin": ss.RigidBody(0.1, load=(0.0, 10.0)), "damper2": ss.RigidBody(0.1)}
+    faces = [
+        ss.Face(points=up, to="left", body="pin", **values),
+        ss.Face(points=up, to="pin", body="damper2", **values),
+    ]
+    damper, blade = (
+        ss.BodyDamper(bodies, faces),
+        ss.Structure(np.eye(2), np.eye(2), dofs=["x", "y"]),
+    )
+    alone = damper.inside(blade, left_dofs=["x", "y"])
+    assert alone.structure.dofs == ("x", "y", "pin.x", "pin.y", "damper2.x", "damper2.y")
+    assert alone.forces == (ss.Force("pin.y", 10.0, harmonic=0),)
+    named = damper.built(blade, ["x", "y"], None, "second").structure.dofs[2:]
+    assert named == ("second.pin.x", "second.pin.y", "second.damper2.x", "second.damper2.y")

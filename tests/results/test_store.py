@@ -103,7 +103,7 @@ def test_dataset(frf):
     }
     assert all(variable.attrs["long_name"] for variable in dataset.variables.values())
     flags = dataset["status"].attrs
-    assert flags["flag_values"].tolist() == list(range(11))
+    assert flags["flag_values"].tolist() == list(range(12))
     assert flags["flag_meanings"].split() == [
         "converged",
         "stalled",
@@ -116,6 +116,7 @@ def test_dataset(frf):
         "effort_limit",
         "free",
         "history",
+        "other_motion",
     ]
     assert dataset.attrs["stickslip_version"] == ss.__version__
     assert json.loads(dataset.attrs["settings"])["residual"] == 1.5

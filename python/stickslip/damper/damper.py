@@ -266,7 +266,7 @@ class Damper(ABC):
     ) -> Built:
         """Return structure and bodies in one, with contacts and loads."""
         text(name, "damper: name")
-        names = {one: name + one.removeprefix(DAMPER) for one in self.bodies}
+        names = {one: _of_damper(one, name) for one in self.bodies}
         own = join({names[one]: body.structure() for one, body in self.bodies.items()})
         contacts = self._contacts(touched, names)
         if name != DAMPER:
@@ -304,6 +304,14 @@ class Damper(ABC):
     def _at(self, body: str, point: ContactPoint, names: Mapping[str, str]) -> list[Sum]:
         sums = self.bodies[body].at(point)
         return [{f"{names[body]}.{dof}": factor for dof, factor in one.items()} for one in sums]
+
+
+def _of_damper(body: str, name: str) -> str:
+    """Return the name of a body in a damper of some name: "damper-2.left" of "damper.left"."""
+    if name == DAMPER:
+        return body
+    part = body.removeprefix(DAMPER)
+    return name + part if body != part and part[:1] in ("", ".") else f"{name}.{body}"
 
 
 def widened(interface: Interface | None, size: int) -> Interface | None:
