@@ -116,17 +116,14 @@ class Surface:
         Around their normals faces go along the edge between them in opposite directions.
         """
         corners = [face[:, : _CORNERS[face.shape[1]]] for face in self.faces]
-        edges = np.vstack(
-            [np.stack([one, np.roll(one, -1, axis=1)], -1).reshape(-1, 2) for one in corners]
-        )
+        begin = np.concatenate([one.ravel() for one in corners])
+        end = np.concatenate([np.roll(one, -1, axis=1).ravel() for one in corners])
         # Corners of a collapsed face coincide.
-        edges = edges[edges[:, 0] != edges[:, 1]]
-        there, count = np.unique(edges, axis=0, return_counts=True)
-        size = len(self.labels)
-        doubled, back = there[count > 1], edges[:, 1] * size + edges[:, 0]
-        alone = doubled[~np.isin(doubled[:, 0] * size + doubled[:, 1], back)]
+        edge, size = begin != end, len(self.labels)
+        there, count = np.unique((begin * size + end)[edge], return_counts=True)
+        alone = np.setdiff1d(there[count > 1], (end * size + begin)[edge])
         if alone.size:
-            one, other = self.labels[alone[0]]
+            one, other = self.labels[list(divmod(int(alone[0]), size))]
             raise ModelError(
                 f"surface: the faces at the edge of nodes {one} and {other} are numbered in "
                 "opposite senses, so that their normals point to different sides; number them alike"
