@@ -293,3 +293,14 @@ def test_a_speed_that_changes_nothing_is_refused(tmp_path):
     (tmp_path / "study.toml").write_text(text + "omega = [100.0]\n", encoding="utf-8")
     with pytest.raises(ss.ModelError, match="'speed' without 'stiffening' changes nothing"):
         Study.load(tmp_path / "study.toml")
+
+
+def test_engine_order_0_has_no_line():
+    disk = ss.BladedDisk(
+        blade(0.0).structure, 8, forces=[ss.Force("tip", 1.0)], engine_order=0, couplings=[]
+    )
+    for diagram in ("campbell", "safe"):
+        with pytest.raises(ss.ModelError, match="forces of engine order 0 have no frequency"):
+            ss.campbell(disk, speed=[50.0, 100.0], diagram=diagram)
+        assert ss.campbell(disk, speed=[50.0, 100.0], diagram=diagram, orders=[2]).orders == (2,)
+    assert ss.campbell(disk, diagram="nodal-diameters").stuck.shape == (1, 5, 1)

@@ -40,7 +40,8 @@ def campbell(
     Raises
     ------
     ModelError
-        If a speed makes no model, or the diagram needs a disk or a speed that is not there.
+        If a speed makes no model, or the diagram needs a disk or a speed that is not there, or an
+        engine order above 0.
     """
     speeds: Float = np.zeros(1) if settings.speed is None else np.asarray(settings.speed)
     if isinstance(settings.speed, tuple):
@@ -68,7 +69,7 @@ def campbell(
             run.reached((number + 1) / speeds.size)
     diameters = np.arange(found[0][0].shape[0])
     stuck, slipping = (np.array([pair[which] for pair in found]) for which in (0, 1))
-    return Campbell(
+    result = Campbell(
         model=members[0],
         dofs=members[0].structure.dofs,
         interrupted=False,
@@ -78,6 +79,10 @@ def campbell(
         settings=CampbellSettings.of(**settings.part(CampbellSettings)),
         arrays=CampbellArrays(speed=speeds, diameter=diameters, stuck=stuck, slipping=slipping),
     )
+    if settings.diagram != "nodal-diameters" and not all(result.orders):
+        reason = "orders: forces of engine order 0 have no frequency that goes with the speed; give"
+        raise ModelError(f"{reason} orders=[...]", study=f"{reason} 'orders'")
+    return result
 
 
 def model_at(build: object, speed: float) -> Model:
