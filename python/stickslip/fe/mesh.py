@@ -24,8 +24,8 @@ from stickslip.checks import (
 )
 from stickslip.errors import ModelError
 from stickslip.fe.faces import outside, tables
-from stickslip.fe.natural import natural_modes
 from stickslip.fe.overlap import distinct
+from stickslip.fe.reduced_modes import natural_modes
 from stickslip.fe.reduction import Reduction
 from stickslip.fe.solid import Solid
 from stickslip.fe.surface import Places, Surface

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip.checks import Matrix, MatrixLike, whole_number
 from stickslip.errors import ModelError
-from stickslip.fe.natural import natural_modes, shift_below, springs_of
+from stickslip.fe.reduced_modes import natural_modes, shift_below, springs_of
 from stickslip.fe.sparse import Factor, lowest_modes
 from stickslip.model import Force
 from stickslip.model.damping import DampingLaw
