@@ -232,3 +232,27 @@ def test_a_load_beyond_friction_in_space_carries_a_body_away(load: float, status
     assert ss.static_response(model).status == status
     response = ss.forced_response(model, [60.0], 5, stability=False)
     assert response.status[0] == status
+
+
+def test_the_least_normal_force_is_below_the_greatest():
+    """A block on a rough and a smooth face, by hand: pressed least in all, the rough one is most.
+
+    Along x and y -0.6 N + 0.6 S - 0.8 T = 0 and 0.8 N + 0.8 S - 0.6 T = 100 with T = +-0.5 N.
+    """
+    laws = {"tangential_stiffness": 1e6, "normal_stiffness": 1e6}
+    faces = [
+        ss.Coulomb(["x", "y"], normal=[0.6, -0.8], friction=0.5, name="rough", **laws),
+        ss.Coulomb(["x", "y"], normal=[-0.6, -0.8], friction=0.0, name="smooth", **laws),
+    ]
+    block = ss.Structure(np.eye(2), np.zeros((2, 2)), dofs=["x", "y"])
+    at_rest = ss.static_response(ss.Model(block, faces, [ss.Force("y", -100.0, harmonic=0)]))
+    ends = {"rough": [], "smooth": []}
+    for slip in (0.5, -0.5):
+        share = (0.6 + 0.8 * slip) / 0.6
+        rough = 100.0 / (0.8 + 0.8 * share - 0.6 * slip)
+        ends["rough"].append(rough)
+        ends["smooth"].append(share * rough)
+    for name, forces in ends.items():
+        for alone in (False, True):
+            found = at_rest.normal_force_range(name, alone=alone)
+            assert found == pytest.approx(sorted(forces), rel=1e-9)

@@ -74,7 +74,9 @@ def normal_force_range(
     least = 0.0 if low is None else max(float(low[place]), 0.0)
     if high is None:
         return least, np.inf if alone else normal_force_range(model, force, place, alone=True)[1]
-    return least, float(high[place])
+    # Of all nodes together this one may be pressed more where their sum is least.
+    ends = sorted((least, max(float(high[place]), 0.0)))
+    return ends[0], ends[1]
 
 
 def _nodes(model: Model) -> Iterator[_Node]:
