@@ -16,6 +16,7 @@ mod problem;
 mod python_law;
 mod response;
 mod settings;
+mod sparse;
 mod statics;
 mod transient;
 mod watch;
@@ -37,6 +38,7 @@ mod _core {
         orbits::{exact_peak, exact_response, orbit_history},
         problem::Problem,
         response::{amplitude, forced_response, single_harmonic},
+        sparse::SparseCholesky,
         statics::static_response,
         transient::transient,
     };

@@ -27,6 +27,12 @@ __version__: str
 
 class TooFastError(ValueError): ...
 
+class SparseCholesky:
+    def __init__(
+        self, begins: NDArray[np.int64], rows: NDArray[np.int64], numbers: Float
+    ) -> None: ...
+    def solve(self, right: Float) -> Float: ...
+
 class Problem:
     def __init__(
         self,

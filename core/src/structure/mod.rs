@@ -27,6 +27,7 @@ mod restraint;
 mod ring;
 mod ring_compliance;
 mod ring_order;
+mod sparse_cholesky;
 mod sparse_compliance;
 mod sparse_contacts;
 mod sparse_matrices;
@@ -51,6 +52,7 @@ pub(crate) use proportional::ModalDamping;
 pub use quasi_static::QuasiStatic;
 pub use ring::{Ring, RingCoupling, RingSector};
 pub use ring_order::{RingLayout, RingMotion, RingOrder};
+pub use sparse_cholesky::SparseCholesky;
 pub use system::Structure;
 
 use crate::Error;

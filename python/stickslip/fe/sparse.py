@@ -16,6 +16,8 @@ from stickslip.errors import ModelError
 if TYPE_CHECKING:
     from scipy.sparse import csc_array
 
+    from stickslip import _core
+
 _ASYMMETRY = 1e-8
 _DENSE = 400
 """Rows up to which a dense eigenproblem is faster and surer than Lanczos' method."""
@@ -59,25 +61,43 @@ def symmetric_sparse(value: object, entry: str) -> tuple[csc_array, float]:
 
 
 class Factor:
-    """A symmetric sparse matrix, factored (SuperLU).
+    """A symmetric sparse matrix, factored: by Cholesky's method, or by SuperLU if it is indefinite.
 
     Raises RuntimeError if it is singular to the last digit, MemoryError if its factors do not fit.
     """
 
     def __init__(self, matrix: csc_array) -> None:
-        from scipy.sparse.linalg import splu
-
-        # Pivots on the diagonal keep the symmetric order, which fills in least.
-        options = {"SymmetricMode": True}
-        self._lu: Any = _interruptible(
-            lambda: splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
-        )
         self.size = matrix.shape[0]
+        self._factor: Any = _cholesky(matrix) or _lu(matrix)
 
     def solve(self, right: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the solution of one or more right-hand sides, shape (N,) or (N, columns)."""
-        solution: NDArray[np.float64] = self._lu.solve(right)
-        return solution
+        solution: NDArray[np.float64] = self._factor.solve(right.reshape(self.size, -1))
+        return solution.reshape(right.shape)
+
+
+def _cholesky(matrix: csc_array) -> _core.SparseCholesky | None:
+    from scipy.sparse import tril
+
+    from stickslip import _core
+
+    lower = tril(matrix, format="csc")
+    lower.sum_duplicates()
+    begins, rows = lower.indptr.astype(np.int64), lower.indices.astype(np.int64)
+    try:
+        return _core.SparseCholesky(begins, rows, lower.data)
+    except ValueError:
+        return None
+
+
+def _lu(matrix: csc_array) -> Any:
+    from scipy.sparse.linalg import splu
+
+    # Pivots on the diagonal keep the symmetric order, which fills in least.
+    options = {"SymmetricMode": True}
+    return _interruptible(
+        lambda: splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
+    )
 
 
 def lowest_modes(
