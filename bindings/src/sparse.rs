@@ -14,23 +14,28 @@ pub struct SparseCholesky(Arc<structure::SparseCholesky>);
 
 #[pymethods]
 impl SparseCholesky {
-    /// Of the lower triangle of a matrix in compressed columns; a `ValueError` if it is not positive definite or
-    /// the factor does not fit into memory.
+    /// Of a symmetric matrix in compressed columns; a `ValueError` if it is not positive definite or the factor does
+    /// not fit into memory.
     #[new]
     fn new(
         py: Python<'_>,
         begins: Array1<'_, i64>,
-        rows: Array1<'_, i64>,
+        rows: Array1<'_, i32>,
         numbers: Array1<'_, f64>,
     ) -> PyResult<Self> {
-        let places = |given: &Array1<'_, i64>| {
-            given.as_array().iter().map(|&at| usize::try_from(at).unwrap_or(usize::MAX)).collect()
-        };
-        let (begins, rows) = (places(&begins), places(&rows));
-        let numbers = numbers.as_array().iter().copied().collect();
+        // A place that is none is beyond every array.
+        let place = |at: i64| usize::try_from(at).unwrap_or(usize::MAX);
+        let begins = begins.as_array().iter().map(|&at| place(at)).collect();
+        let rows = rows.as_array().iter().map(|&row| place(row.into())).collect();
+        let numbers = numbers.as_array().to_vec();
         let factor = whole(py, move |_| Ok(structure::SparseCholesky::new(begins, rows, numbers)))?;
         let refused = || PyValueError::new_err("matrix: not positive definite, or too large");
         Ok(Self(Arc::new(factor.ok_or_else(refused)?)))
+    }
+
+    /// Numbers that the factor has, some of them zero.
+    fn numbers(&self) -> usize {
+        self.0.numbers()
     }
 
     /// The solutions of some right-hand sides, shape (N, columns).

@@ -176,6 +176,12 @@ def test_rigid_motions_that_a_reduction_keeps_are_not_taken_for_unstable(ends, m
     assert held.structure().unstable_dof == "b"
 
 
+@pytest.mark.parametrize("left", [1e-9, -1e-9])
+def test_the_motion_that_grows_fastest_is_named_not_what_rounding_left(left):
+    stiffness = np.diag([left, -1.0, 1e5])
+    assert ss.Structure(np.eye(3), stiffness, None, list("abc")).unstable_dof == "b"
+
+
 @pytest.mark.parametrize("spring", [1e3, -1e3, 0.0])
 @pytest.mark.parametrize("ends", [(0, 60), (0, 1)])
 def test_massless_dofs_at_rigid_motions_are_judged_by_what_they_hold(ends, spring):

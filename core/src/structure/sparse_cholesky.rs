@@ -1,53 +1,154 @@
 //! Cholesky's factorisation of a large sparse matrix, for reductions of finite-element models.
 
-use faer::linalg::solvers::Solve as _;
-use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
-use faer::sparse::{SparseColMat, SymbolicSparseColMat};
-use faer::{Mat, Side};
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::perm::Perm;
+use faer::sparse::linalg::cholesky::{
+    factorize_symbolic_cholesky, LltRef, SymbolicCholesky, SymmetricOrdering,
+};
+use faer::sparse::{SparseColMat, SymbolicSparseColMat, SymbolicSparseColMatRef};
+use faer::{Conj, Mat, Par, Side};
+use feral_metis::{metis_order, CscPattern};
 
-/// The factor L of `A = L Lᵀ`, in an order that fills in little.
-#[derive(Debug, Clone)]
+/// Numbers of a factor from which on a search for a better order pays.
+const LARGE: usize = 10_000_000;
+
+type Pattern<'a> = SymbolicSparseColMatRef<'a, usize>;
+
+/// The factor L of `P A Pᵀ = L Lᵀ`, in an order that fills in little.
+#[derive(Debug)]
 pub struct SparseCholesky {
-    factor: Llt<usize, f64>,
-    size: usize,
+    pattern: SymbolicCholesky<usize>,
+    factor: Vec<f64>,
 }
 
 impl SparseCholesky {
-    /// Of a symmetric matrix by its lower triangle, column by column: where each begins, its rows ascending, its
-    /// numbers. Nothing if the matrix is not positive definite, is none, or its factor does not fit into memory.
+    /// Of a symmetric matrix, column by column: where each begins, its rows ascending, its numbers, of which those
+    /// above the diagonal are not looked at. Nothing if the matrix is not positive definite, is none, or its factor
+    /// does not fit into memory.
     #[must_use]
     pub fn new(begins: Vec<usize>, rows: Vec<usize>, numbers: Vec<f64>) -> Option<Self> {
-        let size = begins.len().checked_sub(1)?;
-        let whole = begins[0] == 0 && begins[size] == rows.len() && rows.len() == numbers.len();
-        let ordered = |column: &[usize]| {
-            let own = rows.get(column[0]..column[1]);
-            own.is_some_and(|own| {
-                own.windows(2).all(|pair| pair[0] < pair[1])
-                    && own.last().is_none_or(|last| *last < size)
-            })
-        };
-        if !whole || !begins.windows(2).all(ordered) {
-            return None;
-        }
-        let pattern = SymbolicSparseColMat::new_checked(size, size, begins, None, rows);
-        let matrix = SparseColMat::new(pattern, numbers);
-        let symbolic = SymbolicLlt::try_new(matrix.symbolic(), Side::Lower).ok()?;
-        let factor = Llt::try_new_with_symbolic(symbolic, matrix.as_ref(), Side::Lower).ok()?;
-        Some(Self { factor, size })
+        let matrix = lower_triangle(begins, rows, numbers)?;
+        let pattern = least_fill(matrix.symbolic())?;
+        let mut factor = Vec::new();
+        factor.try_reserve_exact(pattern.len_val()).ok()?;
+        factor.resize(pattern.len_val(), 0.0);
+        let work = pattern.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default());
+        let mut work = MemBuffer::try_new(work).ok()?;
+        let found = pattern.factorize_numeric_llt(
+            &mut factor,
+            matrix.as_ref(),
+            Side::Lower,
+            Default::default(),
+            Par::Seq,
+            MemStack::new(&mut work),
+            Default::default(),
+        );
+        found.is_ok().then_some(())?;
+        Some(Self { pattern, factor })
+    }
+
+    /// Numbers that the factor has, some of them zero.
+    #[must_use]
+    pub fn numbers(&self) -> usize {
+        self.factor.len()
     }
 
     /// Rows of the matrix.
     #[must_use]
     pub fn size(&self) -> usize {
-        self.size
+        self.pattern.nrows()
     }
 
     /// The solutions `A⁻¹ b` of the columns of as many rows.
     #[must_use]
     pub fn solve(&self, mut right: Mat<f64>) -> Mat<f64> {
-        self.factor.solve_in_place(right.as_mut());
+        let mut work =
+            MemBuffer::new(self.pattern.solve_in_place_scratch::<f64>(right.ncols(), Par::Seq));
+        LltRef::new(&self.pattern, &self.factor).solve_in_place_with_conj(
+            Conj::No,
+            right.as_mut(),
+            Par::Seq,
+            MemStack::new(&mut work),
+        );
         right
     }
+}
+
+/// The lower triangle of a matrix, which is dropped: a factor needs the memory. Nothing if places are wrong.
+fn lower_triangle(
+    begins: Vec<usize>,
+    rows: Vec<usize>,
+    numbers: Vec<f64>,
+) -> Option<SparseColMat<usize, f64>> {
+    let size = begins.len().checked_sub(1)?;
+    if begins[0] != 0 || begins[size] != rows.len() || rows.len() != numbers.len() {
+        return None;
+    }
+    let (mut ends, mut lower, mut values) = (vec![0], Vec::new(), Vec::new());
+    for (column, ends_of) in begins.windows(2).enumerate() {
+        let own = rows.get(ends_of[0]..ends_of[1])?;
+        if !own.windows(2).all(|pair| pair[0] < pair[1]) || own.last().is_some_and(|&i| i >= size) {
+            return None;
+        }
+        let first = ends_of[0] + own.partition_point(|&row| row < column);
+        lower.extend_from_slice(&rows[first..ends_of[1]]);
+        values.extend_from_slice(&numbers[first..ends_of[1]]);
+        ends.push(lower.len());
+    }
+    let pattern = SymbolicSparseColMat::new_checked(size, size, ends, None, lower);
+    Some(SparseColMat::new(pattern, values))
+}
+
+/// The pattern of the factor in the better one of two orders: approximate minimum degree, and nested dissection where
+/// the factor is large. Of blocks and plates of elements the second needs half the numbers of the first.
+fn least_fill(lower: Pattern<'_>) -> Option<SymbolicCholesky<usize>> {
+    let by_degree = filled(lower, SymmetricOrdering::Amd);
+    if by_degree.as_ref().is_some_and(|pattern| pattern.len_val() < LARGE) {
+        return by_degree;
+    }
+    let order = nested_dissection(lower);
+    let dissected =
+        order.as_ref().and_then(|order| filled(lower, SymmetricOrdering::Custom(order.as_ref())));
+    by_degree.into_iter().chain(dissected).min_by_key(SymbolicCholesky::len_val)
+}
+
+fn filled(
+    lower: Pattern<'_>,
+    order: SymmetricOrdering<'_, usize>,
+) -> Option<SymbolicCholesky<usize>> {
+    factorize_symbolic_cholesky(lower, Side::Lower, order, Default::default()).ok()
+}
+
+/// An order by which separators come last (Karypis and Kumar, 1998); nothing for more entries than its numbers count.
+fn nested_dissection(lower: Pattern<'_>) -> Option<Perm<usize>> {
+    let size = lower.ncols();
+    let entries = || {
+        let column = |j| lower.row_idx_of_col(j).map(move |i| (i, j));
+        (0..size).flat_map(column).filter(|(i, j)| i != j)
+    };
+    let mut begins = vec![0_i32; size + 1];
+    i32::try_from(2 * lower.compute_nnz()).ok()?;
+    for (i, j) in entries() {
+        begins[i + 1] += 1;
+        begins[j + 1] += 1;
+    }
+    for row in 0..size {
+        begins[row + 1] += begins[row];
+    }
+    let place = |at: i32| usize::try_from(at).unwrap_or_default();
+    let (mut ends, mut rows) = (begins.clone(), vec![0_i32; place(begins[size])]);
+    // Columns of the upper triangle before those of the lower one, so that rows ascend.
+    for (one, other) in entries().map(|(i, j)| (j, i)).chain(entries()) {
+        rows[place(ends[other])] = i32::try_from(one).ok()?;
+        ends[other] += 1;
+    }
+    let order = metis_order(&CscPattern::new(size, &begins, &rows)?).ok()?;
+    let order: Vec<usize> = order.into_iter().map(place).collect();
+    let mut inverse = vec![0; size];
+    for (at, &row) in order.iter().enumerate() {
+        inverse[row] = at;
+    }
+    Some(Perm::new_checked(order.into(), inverse.into(), size))
 }
 
 #[cfg(test)]
@@ -72,6 +173,30 @@ mod tests {
                 assert!((image - (i + 7 * j) as f64).abs() < 1e-10);
             }
         }
+    }
+
+    #[test]
+    fn nested_dissection_fills_in_less_than_the_order_of_a_grid() {
+        let (side, size) = (16, 16 * 16 * 16);
+        let ends_of = |j: usize| {
+            let (x, y, z) = (j % side, j / side % side, j / side / side);
+            let inside = [(x, 1), (y, side), (z, side * side)].into_iter();
+            let beside = inside.filter(|(at, _)| at + 1 < side).map(move |(_, step)| j + step);
+            [j].into_iter().chain(beside).collect::<Vec<_>>()
+        };
+        let columns: Vec<_> = (0..size).map(ends_of).collect();
+        let ends = columns.iter().scan(0, |end, column| {
+            *end += column.len();
+            Some(*end)
+        });
+        let begins = [0].into_iter().chain(ends).collect();
+        let numbers = columns.iter().flatten().map(|_| 1.0).collect();
+        let grid = lower_triangle(begins, columns.concat(), numbers).unwrap();
+        let order = nested_dissection(grid.symbolic()).unwrap();
+        let numbers = |order| filled(grid.symbolic(), order).unwrap().len_val();
+        let dissected = numbers(SymmetricOrdering::Custom(order.as_ref()));
+        assert!(dissected < numbers(SymmetricOrdering::Identity));
+        assert_eq!(least_fill(grid.symbolic()).unwrap().len_val(), numbers(SymmetricOrdering::Amd));
     }
 
     #[test]

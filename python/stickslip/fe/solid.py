@@ -6,7 +6,7 @@ import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -33,8 +33,12 @@ _VTK = np.array(
 """Places of the 20 nodes in VTK's order, in half edges."""
 _MIRRORED = [*range(4, 8), *range(4), *range(12, 16), *range(8, 12), *range(16, 20)]
 """The same with top and bottom exchanged."""
+_ELEMENTS = 4000
+"""Elements at a time: the entries of all of them need far more memory than the matrix."""
 _BLOCK = 2000
 """Nodes at a time: the differences of all instants of so many fit into memory."""
+
+_Array: TypeAlias = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,9 +77,10 @@ class Solid:
             object.__setattr__(self, name, number)
         if not -1.0 < real_number(self.poisson, "solid: poisson") < 0.5:
             raise ModelError(f"solid: poisson {self.poisson:g} must lie between -1 and 0.5")
-        # Order 4 integrates the mass of a brick exactly.
+        # It numbers and places degrees of freedom: at one point, or its values fill the memory.
         element = skfem.ElementVector(skfem.ElementHexS2())
-        object.__setattr__(self, "_basis", skfem.Basis(self.mesh, element, intorder=4))
+        middle = np.full((3, 1), 0.5), np.ones(1)
+        object.__setattr__(self, "_basis", skfem.Basis(self.mesh, element, quadrature=middle))
 
     @cached_property
     def nodes(self) -> NDArray[np.float64]:
@@ -93,27 +98,34 @@ class Solid:
     @cached_property
     def stiffness(self) -> csc_array:
         """Stiffness matrix [N/m], sparse, of the free body."""
-        _, grad, weights = self._shapes
         shear = self.young / (2.0 * (1.0 + self.poisson))
         lame = 2.0 * shear * self.poisson / (1.0 - 2.0 * self.poisson)
-        flat = grad.reshape(*grad.shape[:2], 60)  # (element, point, shape function and direction)
-        products = np.matmul((flat * weights[:, :, None]).transpose(0, 2, 1), flat)
-        products = products.reshape(-1, 20, 3, 20, 3)
-        whole = lame * products + shear * products.transpose(0, 1, 4, 3, 2)
-        trace = shear * np.einsum("eaibi->eab", products)
-        for way in range(3):
-            whole[:, :, way, :, way] += trace
-        return self._assembled(whole)
+
+        def of_elements(_: _Array, grad: _Array, weights: _Array) -> _Array:
+            flat = grad.reshape(*grad.shape[:2], 60)  # (element, point, function and direction)
+            products = np.matmul((flat * weights[:, :, None]).transpose(0, 2, 1), flat)
+            products = products.reshape(-1, 20, 3, 20, 3)
+            whole = lame * products + shear * products.transpose(0, 1, 4, 3, 2)
+            trace = shear * np.einsum("eaibi->eab", products)
+            for way in range(3):
+                whole[:, :, way, :, way] += trace
+            return whole
+
+        return self._assembled(of_elements)
 
     @cached_property
     def mass(self) -> csc_array:
         """Consistent mass matrix [kg], sparse."""
-        shapes, _, weights = self._shapes
-        scalar = np.einsum("aq,bq,eq->eab", shapes, shapes, self.density * weights, optimize=True)
-        whole = np.zeros((len(scalar), 20, 3, 20, 3))
-        for way in range(3):
-            whole[:, :, way, :, way] = scalar
-        return self._assembled(whole)
+
+        def of_elements(shapes: _Array, _: _Array, weights: _Array) -> _Array:
+            of_density = self.density * weights
+            scalar = np.einsum("aq,bq,eq->eab", shapes, shapes, of_density, optimize=True)
+            whole = np.zeros((len(scalar), 20, 3, 20, 3))
+            for way in range(3):
+                whole[:, :, way, :, way] = scalar
+            return whole
+
+        return self._assembled(of_elements)
 
     def nearest(self, point: ArrayLike) -> int:
         """Return the node nearest to a point [m]."""
@@ -174,32 +186,39 @@ class Solid:
         """
         write_vtu(path, self.nodes, [("hexahedron20", self.elements)], fields)
 
-    def _assembled(self, whole: NDArray[np.float64]) -> csc_array:
-        """Add up matrices of elements, shape (elements, 20, 3, 20, 3).
+    def _assembled(self, of_elements: Callable[[_Array, _Array, _Array], _Array]) -> csc_array:
+        """Add up matrices of elements, shape (elements, 20, 3, 20, 3), of their `_shapes`.
 
         The forms of scikit-fem give the same to rounding, eleven times slower: they are evaluated
         for each of the 60 x 60 pairs of shape functions.
         """
         from scipy.sparse import coo_array
 
-        dofs = (3 * self._node_of_place[:, :, None] + np.arange(3)).reshape(-1, 60)
-        rows = np.broadcast_to(dofs[:, :, None], (len(dofs), 60, 60))
-        columns = rows.transpose(0, 2, 1)
         size = 3 * len(self.nodes)
-        entries = (whole.ravel(), (rows.ravel(), columns.ravel()))
-        matrix = coo_array(entries, shape=(size, size)).tocsc()
-        matrix.eliminate_zeros()
-        return matrix
+        dofs = (3 * self._node_of_place[:, :, None] + np.arange(3)).reshape(-1, 60)
+        dofs = dofs.astype(np.int32 if size <= np.iinfo(np.int32).max else np.int64)
+        parts = []
+        for first in range(0, len(dofs), _ELEMENTS):
+            some = np.arange(first, min(first + _ELEMENTS, len(dofs)))
+            rows = np.broadcast_to(dofs[some, :, None], (len(some), 60, 60))
+            columns = rows.transpose(0, 2, 1)
+            entries = of_elements(*self._shapes(some)).ravel(), (rows.ravel(), columns.ravel())
+            parts.append(coo_array(entries, shape=(size, size)).tocsc())
+        while len(parts) > 1:  # in pairs: one after the other, each would copy all before it
+            pairs = zip(parts[::2], parts[1::2], strict=False)
+            parts = [one + other for one, other in pairs] + parts[len(parts) // 2 * 2 :]
+        parts[0].eliminate_zeros()
+        return parts[0]
 
-    @cached_property
-    def _shapes(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-        """Shape functions and weights at the points of the elements.
+    def _shapes(self, elements: NDArray[np.int64]) -> tuple[_Array, _Array, _Array]:
+        """Shape functions and weights at the points of some elements.
 
         The values (function, point) are the same in every element; the gradients are (element,
         point, function, direction).
         """
         skfem = _skfem()
-        basis = skfem.Basis(self.mesh, skfem.ElementHexS2(), intorder=4)
+        # Order 4 integrates the mass of a brick exactly.
+        basis = skfem.Basis(self.mesh, skfem.ElementHexS2(), intorder=4, elements=elements)
         values = np.array([np.atleast_2d(np.asarray(one[0]))[0] for one in basis.basis])
         shape = basis.dx.shape
         grad = np.array([np.broadcast_to(one[0].grad, (3, *shape)) for one in basis.basis])

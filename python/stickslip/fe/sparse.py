@@ -57,7 +57,7 @@ def symmetric_sparse(value: object, entry: str) -> tuple[csc_array, float]:
             f"{entry}: not symmetric, by {skew:.2g} of its largest entry; mirror the triangle that "
             "is filled, or put skew terms into the damping of the reduced structure"
         )
-    return csc_array(0.5 * (matrix + matrix.T)), skew
+    return (csc_array(0.5 * (matrix + matrix.T)) if skew else matrix), skew
 
 
 class Factor:
@@ -77,15 +77,12 @@ class Factor:
 
 
 def _cholesky(matrix: csc_array) -> _core.SparseCholesky | None:
-    from scipy.sparse import tril
-
     from stickslip import _core
 
-    lower = tril(matrix, format="csc")
-    lower.sum_duplicates()
-    begins, rows = lower.indptr.astype(np.int64), lower.indices.astype(np.int64)
+    matrix.sum_duplicates()
+    begins, rows = matrix.indptr.astype(np.int64), matrix.indices.astype(np.int32, copy=False)
     try:
-        return _core.SparseCholesky(begins, rows, lower.data)
+        return _core.SparseCholesky(begins, rows, matrix.data)
     except ValueError:
         return None
 

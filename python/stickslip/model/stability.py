@@ -15,46 +15,50 @@ _DRIFT = 1e-7
 
 
 def unstable_row(stiffness: Matrix, mass: Matrix) -> int | None:
-    """Return the row that moves most where the stiffness is negative; None if it never is."""
+    """Return the row that moves most in the motion that grows fastest; None if none grows."""
     if scaled_pivots(stiffness, ROUNDING) is not None:
         return None
     from scipy.linalg import eigh
 
     scale = unit_scale(stiffness)
     values, vectors = eigh(stiffness * scale * scale[:, None], subset_by_index=[0, 0])
-    if values[0] > -10.0 * ROUNDING or _drifts(stiffness, mass):
+    if values[0] > -10.0 * ROUNDING:
         return None
-    return int(np.abs(scale * vectors[:, 0]).argmax())
+    inert: NDArray[np.bool_] = np.asarray(mass.any(axis=1))
+    seen, following = _condensed(stiffness, inert)
+    if seen is None:
+        return int(np.abs(scale * vectors[:, 0]).argmax())
+    last = min(len(seen) - 1, 12)  # two bodies have twelve rigid motions
+    inertia = mass[np.ix_(inert, inert)]
+    squares, motions = eigh(seen, inertia, subset_by_index=[0, last])
+    if _rounding(squares):
+        return None
+    fastest = np.empty(len(mass))
+    fastest[inert], fastest[~inert] = motions[:, 0], following @ motions[:, 0]
+    return int(np.abs(fastest).argmax())
 
 
-def _drifts(stiffness: Matrix, mass: Matrix) -> bool:
-    """Whether rounding explains how fast a motion grows.
+def _rounding(squares: NDArray[np.float64]) -> bool:
+    """Whether rounding explains how fast motions grow, by their omega^2, ascending.
 
     Where a reduction keeps just the dofs that hold a free structure, rounding is all that is
     left of their stiffness: beside itself it looks large, beside the elastic modes it does not.
     """
-    from scipy.linalg import eigh
-
-    inert: NDArray[np.bool_] = np.asarray(mass.any(axis=1))
-    seen = _condensed(stiffness, inert)
-    if seen is None:
-        return False
-    last = min(len(seen) - 1, 12)  # two bodies have twelve rigid motions
-    inertia = mass[np.ix_(inert, inert)]
-    squares = eigh(seen, inertia, eigvals_only=True, subset_by_index=[0, last])
     # Rounding puts rigid motions on either side of zero, some much farther away than others.
     largest = np.maximum.accumulate(np.abs(squares[:-1]))
     return bool((largest < _DRIFT * squares[1:]).any())
 
 
-def _condensed(stiffness: Matrix, inert: NDArray[np.bool_]) -> Matrix | None:
-    """Return the stiffness that dofs with mass see; None if the others grow without them.
+def _condensed(stiffness: Matrix, inert: NDArray[np.bool_]) -> tuple[Matrix | None, Matrix]:
+    """Return the stiffness that dofs with mass see, and how the others follow them.
 
-    Both then have the negative eigenvalues of the whole, by Sylvester's law of inertia.
+    Both then have the negative eigenvalues of the whole, by Sylvester's law of inertia. There is
+    no such stiffness if the others grow without them.
     """
     own, rest = stiffness[np.ix_(inert, inert)], stiffness[np.ix_(~inert, ~inert)]
+    nothing = np.zeros((len(rest), len(own)))
     if not len(rest) or not len(own):
-        return own if len(own) else None
+        return own if len(own) else None, nothing
     scale = unit_scale(rest)
     values, vectors = np.linalg.eigh(rest * scale * scale[:, None])
     across = vectors.T @ (scale[:, None] * stiffness[np.ix_(~inert, inert)])
@@ -62,7 +66,6 @@ def _condensed(stiffness: Matrix, inert: NDArray[np.bool_]) -> Matrix | None:
     # What nothing holds must move alone: coupled to the rest it is negative somewhere.
     pull = np.abs(across[~held] * unit_scale(own))
     if values[0] < -10.0 * ROUNDING or pull.max(initial=0.0) > ROUNDING:
-        return None
-    across = across[held]
-    seen: Matrix = own - across.T @ (across / values[held, None])
-    return seen
+        return None, nothing
+    across, moved = across[held], across[held] / values[held, None]
+    return own - across.T @ moved, -(scale[:, None] * vectors[:, held]) @ moved
