@@ -105,7 +105,7 @@ class Solid:
             flat = grad.reshape(*grad.shape[:2], 60)  # (element, point, function and direction)
             products = np.matmul((flat * weights[:, :, None]).transpose(0, 2, 1), flat)
             products = products.reshape(-1, 20, 3, 20, 3)
-            whole = lame * products + shear * products.transpose(0, 1, 4, 3, 2)
+            whole: _Array = lame * products + shear * products.transpose(0, 1, 4, 3, 2)
             trace = shear * np.einsum("eaibi->eab", products)
             for way in range(3):
                 whole[:, :, way, :, way] += trace
