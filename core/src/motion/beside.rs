@@ -22,7 +22,7 @@ const FOUND: f64 = 1e-7;
 const STEPS: usize = 8;
 /// How far the end of an exponential may be from that of its phase, in the same units: a difference has fewer digits
 /// to lose to the lag than a derivative.
-const CLOSE: f64 = 12.0;
+const CLOSE: f64 = 20.0;
 /// Term of a difference, relative to the motion, that is none.
 const ROUNDING: f64 = 1e-18;
 
@@ -41,8 +41,12 @@ impl Transition<'_> {
         // By how long the difference lags behind, and by how much later the last event was.
         let (mut lag, mut last) = (0.0, 0.0);
         let mut before = self.rates(&phases.first()?.regime, &roots);
+        let leads = self.leads(phases, &self.simple_changes(phases));
         for (number, phase) in phases.iter().enumerate() {
-            lag = self.pass_as_known(&before, phase, lag, &mut own, known)?;
+            lag += phase.duration;
+            if let Some(lead) = leads[number] {
+                lag = self.pass_as_known(&before, [lag, lead], &mut own, known)?;
+            }
             let Some(next) = phases.get(number + 1) else {
                 before.lag(lag, &mut own, 0.0);
                 // Behind the end nothing has happened yet.
@@ -69,19 +73,17 @@ impl Transition<'_> {
     fn pass_as_known(
         &self,
         rates: &Rates<'_>,
-        phase: &LinearPhase,
-        lag: f64,
+        [duration, lead]: [f64; 2],
         difference: &mut [f64],
         known: &mut Propagators,
     ) -> Option<f64> {
-        let (duration, fastest) = (lag + phase.duration, self.system().rate(0.0));
-        let Reach { short, .. } = Reach::LAGGING;
-        if duration * fastest <= short {
+        let fastest = self.system().rate(0.0);
+        if (duration + lead) * fastest <= Reach::CAUGHT_UP.short {
             return Some(duration);
         }
         let (system, weight) = (self.system(), self.weight());
-        let strains: Vec<usize> = rates.moves.iter().map(|(strain, ..)| *strain).collect();
-        let own = known.known(&strains, &phase.regime, [duration, CLOSE / fastest])?;
+        let strains: Vec<usize> = rates.springs.moves.iter().map(|(strain, ..)| *strain).collect();
+        let own = known.known(&strains, &rates.springs, [duration, lead, CLOSE / fastest])?;
         let (motion, g) = difference.split_at_mut(2 * weight.len());
         if (0..g.len()).any(|i| g[i] != 0.0 && strains.binary_search(&i).is_err()) {
             return None;
@@ -97,10 +99,10 @@ impl Transition<'_> {
             rate * parts.map(|((b, s), x)| b / s * x).sum::<f64>()
         };
         let constant: Vec<f64> =
-            rates.moves.iter().map(|one| g[one.0] - strain(&states, one)).collect();
+            rates.springs.moves.iter().map(|one| g[one.0] - strain(&states, one)).collect();
         let inputs = Mat::from_fn(constant.len(), 1, |i, _| constant[i]);
         states = own.exponential.applied(states.as_ref(), inputs.as_ref());
-        for (one, constant) in rates.moves.iter().zip(&constant) {
+        for (one, constant) in rates.springs.moves.iter().zip(&constant) {
             g[one.0] = constant + strain(&states, one);
         }
         for (i, (to, x)) in motion.iter_mut().zip(states.col_as_slice(0)).enumerate() {
@@ -162,7 +164,10 @@ impl Rates<'_> {
     /// Takes a difference on by a lag, or back, but for what counts for nothing.
     fn lag(&self, lag: f64, difference: &mut [f64], nothing: f64) {
         if lag != 0.0 {
-            self.go_on(difference.to_vec(), None, lag, difference, nothing);
+            let steps = self.steps(lag);
+            for _ in 0..steps {
+                self.go_on(difference.to_vec(), None, lag / steps as f64, difference, nothing);
+            }
         }
     }
 }
@@ -270,5 +275,35 @@ mod tests {
         assert!(own
             .beside(&phases, OMEGA, &vec![0.0; own.size()], &mut Propagators::default())
             .is_none());
+    }
+
+    /// It does not matter which way contacts slip: a motion and its mirror image have the same exponentials.
+    #[test]
+    fn a_mirrored_motion_takes_the_exponentials_of_the_motion() {
+        let model = model();
+        let system = ModalSystem::new(&model).unwrap();
+        let mut start = State::rest(&system);
+        Flow::new(&system, OMEGA).run(&mut start, 3.0 * TAU / OMEGA, &mut |_| {}).unwrap();
+        let own = Transition::new(&system, OMEGA);
+        let mut known = Propagators::default();
+        known.serve(OMEGA, system.modes());
+        let mut matrices = Vec::new();
+        let mut count = 0;
+        for mirrored in [false, true] {
+            if mirrored {
+                start.mirror();
+                start.time += 0.5 * TAU / OMEGA;
+            }
+            let (phases, _) = passed(&system, &start);
+            assert!(phases.iter().any(|phase| phase.regime.points.contains(&PointState::Forward)));
+            let none = &mut LoopDisturbance::default();
+            let held = &phases[0].regime.points;
+            matrices.push(own.along(&phases, held, &start.force, none, &mut known));
+            count = if mirrored { count } else { known.count() };
+        }
+        assert!(count > 0);
+        assert_eq!(known.count(), count);
+        let error = (&matrices[0] - &matrices[1]).norm_max() / matrices[0].norm_max();
+        assert!(error < 1e-11, "{error:e}");
     }
 }

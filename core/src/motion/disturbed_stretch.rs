@@ -8,25 +8,25 @@ use faer::{Accum, Mat, Par};
 
 impl Transition<'_> {
     /// Takes disturbances, column by column, over a duration \[s\], or nearly so; the duration that is left,
-    /// which may be negative. One over which nothing moves far is left as a whole.
+    /// which may be negative: a step is longer by a lead. One over which nothing moves far is left as a whole.
     pub(super) fn advance(
         &self,
         regime: &ContactState,
-        duration: f64,
+        [duration, lead]: [f64; 2],
         reach: Reach,
         total: &mut Mat<f64>,
         known: &mut Propagators,
     ) -> f64 {
         let fastest = self.system.rate(0.0);
         // What is to go back has a step behind it that was a little too long.
-        if duration * fastest <= reach.short {
+        if (duration + lead) * fastest <= reach.short {
             return duration;
         }
         let close = reach.close / fastest;
         let room = known.spare.pop().unwrap_or_else(Mat::new);
         let (room, left) =
             self.pass(regime, known.pace, total, room, |equations, states, inputs| {
-                known.advance(equations, regime, [duration, close], states, inputs)
+                known.advance(equations, [duration, lead, close], states, inputs)
             });
         known.spare.push(room);
         left
@@ -93,12 +93,12 @@ impl Transition<'_> {
     /// motions at a pace, or those at hand if it is 0.
     fn equations(&self, regime: &ContactState, pace: f64, disturbed: &[bool]) -> Equations {
         let (system, modes) = (self.system, self.weight.len());
-        let rates = self.strain_rates(regime);
+        let springs = self.springs(regime);
         let mut takes_part = disturbed.to_vec();
-        rates.iter().for_each(|(strain, _, _)| takes_part[*strain] = true);
+        springs.moves.iter().for_each(|(strain, _, _)| takes_part[*strain] = true);
         let strains: Vec<usize> = (0..takes_part.len()).filter(|&i| takes_part[i]).collect();
         let mut moves = Mat::<f64>::zeros(strains.len(), modes);
-        for (strain, point, rate) in &rates {
+        for (strain, point, rate) in &springs.moves {
             let Ok(row) = strains.binary_search(strain) else { continue };
             for (j, b) in system.contact_shape(*point).iter().enumerate() {
                 moves[(row, j)] += rate * b;
@@ -121,10 +121,9 @@ impl Transition<'_> {
         }
         let mut stiffness = Mat::<f64>::zeros(modes, modes);
         matmul(stiffness.as_mut(), Accum::Replace, input.as_ref(), moves.as_ref(), -1.0, Par::Seq);
-        for &point in &system.normals {
-            let slope = regime.tangent[(point, point)];
+        for &(point, slope) in &springs.pressing {
             let shape = system.contact_shape(point);
-            for (j, b) in shape.iter().enumerate().filter(|_| slope != 0.0) {
+            for (j, b) in shape.iter().enumerate() {
                 let column = stiffness.col_as_slice_mut(j).iter_mut();
                 column.zip(shape).for_each(|(k, own)| *k += own * slope * b);
             }
@@ -146,6 +145,7 @@ impl Transition<'_> {
             stiffness,
             damping: system.damping.clone(),
             input,
+            springs,
         }
     }
 
@@ -154,6 +154,9 @@ impl Transition<'_> {
         let mut all = Vec::new();
         for body in self.system.bodies() {
             for i in body.points.clone() {
+                if body.points.clone().all(|r| regime.tangent[(r, i)] == 0.0) {
+                    continue;
+                }
                 let column: Vec<f64> =
                     body.points.clone().map(|r| regime.tangent[(r, i)]).collect();
                 let rates = body.elastic.strains(&column);

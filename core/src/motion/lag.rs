@@ -21,6 +21,11 @@ use faer::{Accum, Mat, Par};
 const FEW: usize = 8;
 /// Points of which one change may change the regime: more are not worth it.
 const POINTS: usize = 2;
+/// Most that disturbances lag or lead, in units of the fastest rate, the sum of it over the changes between two steps,
+/// from which on another step costs less, and the most at the beginning, where they cannot lead.
+const FARTHEST: f64 = 16.0;
+const IN_ALL: f64 = 75.0;
+const BEGINS: f64 = 8.0;
 /// Error of the quadrature, relative to its sum.
 const ROUNDING: f64 = 1e-18;
 
@@ -43,6 +48,47 @@ impl Transition<'_> {
             return None;
         }
         self.changes(&phase.regime, &next.regime)
+    }
+
+    /// Those at the ends of phases.
+    pub(super) fn simple_changes(&self, phases: &[LinearPhase]) -> Vec<Option<Vec<Change>>> {
+        let next = phases.iter().skip(1).map(Some).chain([None]);
+        phases.iter().zip(next).map(|(phase, next)| self.simple_change(phase, next?)).collect()
+    }
+
+    /// By how much longer than each phase its step is \[s\]; nothing where disturbances lag without one. Behind a
+    /// step they lead, and lag in the end: it leads to the median of the changes up to the next step, from where the
+    /// sum of their lags is least.
+    pub(super) fn leads(
+        &self,
+        phases: &[LinearPhase],
+        changes: &[Option<Vec<Change>>],
+    ) -> Vec<Option<f64>> {
+        let rate = self.system.rate(0.0);
+        let lags = |at: usize| changes.get(at).is_some_and(Option::is_some);
+        let mut leads = vec![None; phases.len()];
+        let (mut at, mut begun) = (0, 0.0);
+        while lags(at) && (begun + phases[at].duration) * rate <= BEGINS {
+            begun += phases[at].duration;
+            at += 1;
+        }
+        while at < phases.len() {
+            let (step, mut lead, mut places) = (at, 0.0, vec![0.0]);
+            at += 1;
+            while lags(step) && lags(at) {
+                let last = places[places.len() - 1] + phases[at].duration;
+                places.push(last);
+                let median = places[(places.len() - 1) / 2];
+                let off = places.iter().map(|place| (place - median).abs() * rate);
+                let far = median.max(last - median) * rate > FARTHEST;
+                if far || off.sum::<f64>() > IN_ALL {
+                    break;
+                }
+                (lead, at) = (median, at + 1);
+            }
+            leads[step] = Some(lead);
+        }
+        leads
     }
 
     /// Takes disturbances that lag through the change at the end of a phase.
@@ -241,5 +287,30 @@ mod tests {
                 assert!(fresh < if before == 0 { phases.len() } else { phases.len() / 4 });
             }
         }
+    }
+
+    /// Between two steps disturbances lead to the median of the changes: neither each lag nor their sum is large, and
+    /// of the stretches that are longer than a series reaches many take no step.
+    #[test]
+    fn steps_lead_to_the_median_of_the_changes_up_to_the_next_one() {
+        let model = model(false);
+        let system = ModalSystem::new(&model).unwrap();
+        let (own, rate) = (Transition::new(&system, OMEGA), system.rate(0.0));
+        let (phases, _) = phases(&system, OMEGA, 0.0);
+        let changes = own.simple_changes(&phases);
+        let leads = own.leads(&phases, &changes);
+        let (mut lag, mut sum, mut long) = (0.0_f64, 0.0, 0);
+        for (phase, lead) in phases.iter().zip(&leads) {
+            lag += phase.duration * rate;
+            match lead {
+                Some(lead) => (lag, sum) = (-lead * rate, lead * rate),
+                None => sum += lag.abs(),
+            }
+            assert!(lag.abs() <= FARTHEST && sum <= IN_ALL, "{lag} {sum}");
+            long += usize::from(lead.is_none() && phase.duration * rate > BEGINS);
+        }
+        let steps = leads.iter().flatten().count();
+        assert!(leads.iter().flatten().any(|lead| *lead > 0.0));
+        assert!(long > 3 && steps < phases.len() - long, "{long} {steps} {}", phases.len());
     }
 }

@@ -18,7 +18,8 @@ use super::damping::Damping;
 use super::exponential::{exponential, sum_of, Driven, Function};
 use crate::solve::scaled_square;
 use faer::linalg::matmul::matmul;
-use faer::{Accum, Mat, Par};
+use faer::linalg::matmul::triangular::{self, BlockStructure};
+use faer::{Accum, Mat, MatRef, Par};
 
 /// Difference of entries across the diagonal, relative to those on it, that is rounding.
 const SYMMETRIC: f64 = 1e-14;
@@ -159,11 +160,7 @@ impl Blocks<'_> {
             let own = out.col_as_slice_mut(j)[j..].iter_mut();
             own.zip(parts).for_each(|(own, (p, q))| *own = p - c * q);
         }
-        for j in 0..size {
-            for i in 0..j {
-                out[(i, j)] = out[(j, i)];
-            }
-        }
+        mirror(&mut out);
         for (j, c) in self.of.damping.iter().enumerate().filter(|_| share != 0.0) {
             let parts = out.col_as_slice_mut(j).iter_mut().zip(self.q.col_as_slice(j));
             parts.for_each(|(own, q)| *own += share * c * q);
@@ -177,16 +174,15 @@ impl Blocks<'_> {
         Self { of: self.of, at_zero: 0.0, p, q, v }
     }
 
-    /// The product with another function, from the two parts of Q.
-    fn joined(&self, other: &Self, one: &Mat<f64>, across: &Mat<f64>) -> Self {
+    /// The product with another function, from the lower half of Q. Of V, which is symmetric too, the entries from
+    /// slow to fast modes are taken.
+    fn joined(&self, other: &Self, mut q: Mat<f64>) -> Self {
         let size = self.p.nrows();
-        let mut q = one.clone();
-        for j in 0..size {
-            let to = q.col_as_slice_mut(j).iter_mut();
-            to.enumerate().for_each(|(i, to)| *to += across[(j, i)]);
-        }
-        let mut v = product(&self.p, &other.v);
-        matmul(v.as_mut(), Accum::Add, self.q.as_ref(), other.q.as_ref(), 1.0, Par::Seq);
+        mirror(&mut q);
+        let mut v = Mat::zeros(size, size);
+        add_half(&mut v, &self.p, other.v.as_ref());
+        add_half(&mut v, &self.q, other.q.as_ref());
+        mirror(&mut v);
         if other.at_zero != 0.0 {
             v = sum_of([1.0, other.at_zero], [&v, &self.v]);
         }
@@ -205,15 +201,38 @@ fn product(one: &Mat<f64>, other: &Mat<f64>) -> Mat<f64> {
     out
 }
 
+/// Adds the lower half of a product.
+fn add_half(half: &mut Mat<f64>, one: &Mat<f64>, other: MatRef<'_, f64>) {
+    let [lower, whole] = [BlockStructure::TriangularLower, BlockStructure::Rectangular];
+    let one = one.as_ref();
+    triangular::matmul(half.as_mut(), lower, Accum::Add, one, whole, other, whole, 1.0, Par::Seq);
+}
+
+/// Completes a symmetric matrix by its lower half.
+fn mirror(own: &mut Mat<f64>) {
+    for j in 0..own.ncols() {
+        for i in 0..j {
+            own[(i, j)] = own[(j, i)];
+        }
+    }
+}
+
 impl Function for Blocks<'_> {
     fn times(&self, other: &Self) -> Self {
-        let one = product(&self.speed(0.5), &other.q);
-        self.joined(other, &one, &product(&other.speed(0.5), &self.q))
+        let mut q = Mat::zeros(self.q.nrows(), self.q.ncols());
+        add_half(&mut q, &self.speed(0.5), other.q.as_ref());
+        add_half(&mut q, &self.q, other.speed(0.5).transpose());
+        self.joined(other, q)
     }
 
     fn squared(&self) -> Self {
-        let one = product(&self.speed(0.5), &self.q);
-        self.joined(self, &one, &one)
+        let mut q = product(&self.speed(0.5), &self.q);
+        for j in 0..q.ncols() {
+            for i in j..q.nrows() {
+                q[(i, j)] += q[(j, i)];
+            }
+        }
+        self.joined(self, q)
     }
 
     fn combined<const N: usize>(constant: f64, factors: [f64; N], functions: [&Self; N]) -> Self {

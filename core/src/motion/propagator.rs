@@ -3,12 +3,11 @@
 //! Strains follow the displacements, `g = r + R η` with a constant r, so that they need no equations of their
 //! own: `η'' + C η' + (Ω² + G R) η = −G r`.
 
-use super::contact_state::ContactState;
 use super::damping::Damping;
 use super::exponential::{exponential, Driven};
 use super::oscillator::Oscillator;
 use super::quadrature::Quadrature;
-use crate::contact::PointState;
+use super::regime_rates::Springs;
 use crate::solve::dot;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par};
@@ -28,7 +27,7 @@ const COLUMNS: usize = 48;
 /// The exponential over a stretch.
 #[derive(Debug)]
 pub(super) struct Propagator {
-    points: Vec<PointState>,
+    springs: Springs,
     strains: Vec<usize>,
     pub(super) duration: f64,
     /// The units of its displacements, s per mode [rad/s].
@@ -64,9 +63,8 @@ pub(super) struct Reach {
 impl Reach {
     /// Where a power series of all disturbances makes up for it: it takes fewer operations than an exponential.
     pub(super) const CAUGHT_UP: Self = Self { short: 3.0, close: 1.0 };
-    /// Where disturbances lag through a change of regime, at the price of a few vectors; the rounding of their
-    /// power series grows with the exponential of the lag.
-    pub(super) const LAGGING: Self = Self { short: 8.0, close: 8.0 };
+    /// Where disturbances lag through a change of regime, at the price of a few vectors.
+    pub(super) const LAGGING: Self = Self { short: 0.0, close: 16.0 };
 }
 
 /// Equations of the disturbances in one state of the contacts, in coordinates `(s η, η')`.
@@ -83,6 +81,8 @@ pub(super) struct Equations {
     pub(super) damping: Damping,
     /// `−G`, modes × strains.
     pub(super) input: Mat<f64>,
+    /// The contacts.
+    pub(super) springs: Springs,
 }
 
 impl Equations {
@@ -263,52 +263,57 @@ impl Propagators {
         self.known.len()
     }
 
-    /// What is known of a stretch at the rates of a regime, or nearly so, to within a length.
+    /// What is known of a stretch by the springs of a regime, or nearly so, to within a length; best longer by a lead.
     pub(super) fn known(
         &mut self,
         strains: &[usize],
-        regime: &ContactState,
-        [duration, close]: [f64; 2],
+        springs: &Springs,
+        [duration, lead, close]: [f64; 3],
     ) -> Option<&Propagator> {
         self.stretches += 1;
-        let off = |own: &Propagator| (own.duration - duration).abs();
+        let off = |own: &Propagator, from: f64| (own.duration - from).abs();
         let serves = |own: &&mut Propagator| {
-            off(own) <= close && own.points == regime.points && own.strains == strains
+            off(own, duration) <= close && own.strains == strains && own.springs == *springs
         };
-        let closest = |a: &&mut Propagator, b: &&mut Propagator| off(a).total_cmp(&off(b));
+        let best = duration + lead;
+        let closest =
+            |a: &&mut Propagator, b: &&mut Propagator| off(a, best).total_cmp(&off(b, best));
         let own = self.known.iter_mut().filter(serves).min_by(closest)?;
         own.served = self.stretches;
         Some(own)
     }
 
-    /// Takes states over a stretch at these rates, or nearly so, to within a length; the duration that is left.
+    /// Takes states over a stretch at these rates, or nearly so, to within a length, and best on by a lead; the
+    /// duration that is left.
     pub(super) fn advance(
         &mut self,
         equations: &Equations,
-        regime: &ContactState,
-        [duration, close]: [f64; 2],
+        [duration, lead, close]: [f64; 3],
         states: Mat<f64>,
         inputs: &Mat<f64>,
     ) -> (Mat<f64>, f64) {
         let mut out = self.spare.pop().unwrap_or_else(Mat::new);
-        if let Some(own) = self.known(&equations.strains, regime, [duration, close]) {
+        if let Some(own) =
+            self.known(&equations.strains, &equations.springs, [duration, lead, close])
+        {
             own.exponential.write_applied(states.as_ref(), inputs.as_ref(), &mut out);
             let left = duration - own.duration;
             self.spare.push(states);
             return (out, left);
         }
-        let exponential = equations.exponential(duration);
+        let length = duration + lead;
+        let exponential = equations.exponential(length);
         exponential.write_applied(states.as_ref(), inputs.as_ref(), &mut out);
         self.spare.push(states);
         self.keep(Propagator {
-            points: regime.points.clone(),
+            springs: equations.springs.clone(),
             strains: equations.strains.clone(),
-            duration,
+            duration: length,
             scale: equations.scale.clone(),
             exponential,
             served: self.stretches,
         });
-        (out, 0.0)
+        (out, -lead)
     }
 
     /// Keeps an exponential in the place of those that have not served for longest.
@@ -351,7 +356,8 @@ mod tests {
         let damping = Damping::Diagonal((0..modes).map(|j| 0.02 * (1 + j) as f64).collect());
         let rates = Mat::zeros(3, modes);
         let input = numbers(modes, 3, 0.9);
-        Equations { scale, strains: vec![0, 1, 2], rates, stiffness, damping, input }
+        let springs = Springs { moves: Vec::new(), pressing: Vec::new() };
+        Equations { scale, strains: vec![0, 1, 2], rates, stiffness, damping, input, springs }
     }
 
     /// The exponential by blocks is that of the whole matrix, also over thousands of turns of the fastest mode.

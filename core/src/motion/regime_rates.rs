@@ -9,18 +9,27 @@ use super::transition::Transition;
 use crate::solve::dot;
 use faer::Mat;
 
-/// Term of a power series that is none, relative to the largest, and most terms: over a lag they fall at once.
+/// Term of a power series that is none, relative to the largest, and most terms: over such a length they fall at once.
 const ROUNDING: f64 = 1e-18;
 const TERMS: usize = 60;
+/// Most length of a series, in units of the fastest rate.
+const LENGTH: f64 = 8.0;
+
+/// The contacts of a regime as disturbances see them: the same whichever way the others slip.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Springs {
+    /// Rates of the strains per velocity: strain, point, factor.
+    pub(super) moves: Vec<(usize, usize, f64)>,
+    /// Stiffness of points that press.
+    pub(super) pressing: Vec<(usize, f64)>,
+}
 
 /// The equations of a regime in the coordinates of disturbances.
 pub(super) struct Rates<'a> {
     of: &'a Transition<'a>,
-    /// Rates of the strains per velocity, and what they do to accelerations: strain, point, factor.
-    pub(super) moves: Vec<(usize, usize, f64)>,
+    pub(super) springs: Springs,
+    /// What strains do to accelerations: strain, point, factor.
     roots: &'a [(usize, usize, f64)],
-    /// Stiffness of points that press.
-    pressing: Vec<(usize, f64)>,
 }
 
 impl Transition<'_> {
@@ -42,9 +51,14 @@ impl Transition<'_> {
         regime: &ContactState,
         roots: &'a [(usize, usize, f64)],
     ) -> Rates<'a> {
+        Rates { of: self, springs: self.springs(regime), roots }
+    }
+
+    /// The contacts in a regime.
+    pub(super) fn springs(&self, regime: &ContactState) -> Springs {
         let slope = |&i: &usize| (i, regime.tangent[(i, i)]);
         let pressing = self.system.normals.iter().map(slope).filter(|(_, slope)| *slope != 0.0);
-        Rates { of: self, moves: self.strain_rates(regime), roots, pressing: pressing.collect() }
+        Springs { moves: self.strain_rates(regime), pressing: pressing.collect() }
     }
 }
 
@@ -91,6 +105,11 @@ impl Rates<'_> {
         rate
     }
 
+    /// Number of power series one after the other over a duration: the rounding of each grows with its exponential.
+    pub(super) fn steps(&self, duration: f64) -> usize {
+        (duration.abs() * self.of.system.rate(0.0) / LENGTH).ceil().max(1.0) as usize
+    }
+
     /// `factor A y`.
     #[inline(always)]
     fn apply(&self, y: &[f64], factor: f64, out: &mut [f64], room: &mut Room) {
@@ -110,7 +129,7 @@ impl Rates<'_> {
         for &(strain, point, root) in self.roots {
             room.force[point] -= factor * root * g[strain];
         }
-        for &(point, slope) in &self.pressing {
+        for &(point, slope) in &self.springs.pressing {
             let parts = system.contact_shape(point).iter().zip(weight).zip(x);
             let displaced: f64 = parts.map(|((b, w), x)| b / w * x).sum();
             room.force[point] -= factor * slope * displaced;
@@ -118,7 +137,7 @@ impl Rates<'_> {
         room.press(&system.projection, to_v);
         to_g.fill(0.0);
         system.projection.displacement(v, &mut room.speed);
-        for &(strain, point, rate) in &self.moves {
+        for &(strain, point, rate) in &self.springs.moves {
             to_g[strain] += factor * rate * room.speed[0][point];
         }
     }
@@ -139,12 +158,12 @@ impl Rates<'_> {
         damp(&system.damping, v, -factor, to_v, true);
         room.force.clear();
         room.force.resize(system.points(), 0.0);
-        for &(strain, point, rate) in &self.moves {
+        for &(strain, point, rate) in &self.springs.moves {
             room.force[point] += factor * rate * g[strain];
         }
         room.press(&system.projection, to_v);
         system.projection.displacement(v, &mut room.speed);
-        for &(point, slope) in &self.pressing {
+        for &(point, slope) in &self.springs.pressing {
             let by = -factor * slope * room.speed[0][point];
             let parts = to_x.iter_mut().zip(system.contact_shape(point).iter().zip(weight));
             parts.for_each(|(to, (b, w))| *to += by * b / w);
@@ -215,29 +234,43 @@ impl pulp::NullaryFnOnce for Series<'_> {
 
     #[inline(always)]
     fn call(self) {
-        let Self { rates, start: mut term, times, across, out, place } = self;
-        let longest = times.iter().fold(0.0_f64, |most, t| most.max(t.abs()));
-        let shares: Vec<f64> = times.iter().map(|t| t / longest).collect();
-        let mut powers = vec![1.0; times.len()];
-        let (mut next, mut room) = (vec![0.0; term.len()], Room::default());
-        let mut most = 0.0_f64;
-        for order in 1..TERMS {
-            let size = dot(&term, &term).sqrt();
-            most = most.max(size);
-            if size <= ROUNDING * most {
-                break;
+        let Self { rates, start: mut begin, times, across, out, place } = self;
+        let longest =
+            times.iter().fold(0.0_f64, |most, t| if t.abs() > most.abs() { *t } else { most });
+        let steps = rates.steps(longest);
+        let step = longest / steps as f64;
+        let step_of = |t: f64| ((t / step) as usize).min(steps - 1);
+        let [mut next, mut end] = [(); 2].map(|()| vec![0.0; begin.len()]);
+        let (mut shares, mut room) = (Vec::new(), Room::default());
+        for number in 0..steps {
+            shares.clear();
+            let own = times.iter().enumerate().filter(|(_, t)| step_of(**t) == number);
+            shares.extend(own.map(|(k, t)| (k, t / step - number as f64, 1.0)));
+            let goes_on = number + 1 < steps;
+            end.fill(0.0);
+            let (term, mut most) = (&mut begin, 0.0_f64);
+            for order in 1..TERMS {
+                let size = dot(term, term).sqrt();
+                most = most.max(size);
+                if size <= ROUNDING * most {
+                    break;
+                }
+                for (k, share, power) in &mut shares {
+                    add(out.col_as_slice_mut(place + *k), *power, term);
+                    *power *= *share;
+                }
+                if goes_on {
+                    add(&mut end, 1.0, term);
+                }
+                let factor = step / order as f64;
+                if across {
+                    rates.apply_across(term, factor, &mut next, &mut room);
+                } else {
+                    rates.apply(term, factor, &mut next, &mut room);
+                }
+                std::mem::swap(term, &mut next);
             }
-            for (k, (power, share)) in powers.iter_mut().zip(&shares).enumerate() {
-                add(out.col_as_slice_mut(place + k), *power, &term);
-                *power *= share;
-            }
-            let factor = longest / order as f64;
-            if across {
-                rates.apply_across(&term, factor, &mut next, &mut room);
-            } else {
-                rates.apply(&term, factor, &mut next, &mut room);
-            }
-            std::mem::swap(&mut term, &mut next);
+            std::mem::swap(&mut begin, &mut end);
         }
     }
 }

@@ -141,20 +141,22 @@ impl<'a> Transition<'a> {
         total.get_mut(.., ..own.ncols()).copy_from(&own);
         // By how long the disturbances lag behind.
         let mut lag = 0.0;
+        let changes = self.simple_changes(phases);
+        let leads = self.leads(phases, &changes);
         for (number, phase) in phases.iter().enumerate() {
-            let change = phases
-                .get(number + 1)
-                .and_then(|next| Some((next, self.simple_change(phase, next)?)));
+            let change = phases.get(number + 1).zip(changes[number].as_ref());
             if let Some((series, length)) = &phase.slide {
                 self.slide(&phase.regime, series, *length, &mut total, loops);
-            } else {
+            } else if let Some(lead) = leads[number] {
                 let reach = if change.is_some() { Reach::LAGGING } else { Reach::CAUGHT_UP };
-                let duration = lag + phase.duration;
-                lag = self.advance(&phase.regime, duration, reach, &mut total, known);
+                let lasts = [lag + phase.duration, lead];
+                lag = self.advance(&phase.regime, lasts, reach, &mut total, known);
+            } else {
+                lag += phase.duration;
             }
             if lag != 0.0 {
                 if let Some((next, changed)) = change {
-                    self.pass_late([phase, next], &changed, lag, &mut total, known);
+                    self.pass_late([phase, next], changed, lag, &mut total, known);
                     continue;
                 }
                 self.catch_up(&phase.regime, lag, &mut total);
