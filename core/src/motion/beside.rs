@@ -164,7 +164,7 @@ impl Rates<'_> {
     /// Takes a difference on by a lag, or back, but for what counts for nothing.
     fn lag(&self, lag: f64, difference: &mut [f64], nothing: f64) {
         if lag != 0.0 {
-            let steps = self.steps(lag);
+            let steps = self.of.steps(lag);
             for _ in 0..steps {
                 self.go_on(difference.to_vec(), None, lag / steps as f64, difference, nothing);
             }

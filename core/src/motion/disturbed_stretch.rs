@@ -34,8 +34,11 @@ impl Transition<'_> {
 
     /// Takes disturbances over a short duration, or back, by power series.
     pub(super) fn catch_up(&self, regime: &ContactState, duration: f64, total: &mut Mat<f64>) {
+        let steps = self.steps(duration);
         self.pass(regime, 0.0, total, Mat::new(), |equations, mut states, inputs| {
-            equations.correct(&mut states, inputs, duration);
+            for _ in 0..steps {
+                equations.correct(&mut states, inputs, duration / steps as f64);
+            }
             (states, 0.0)
         });
     }

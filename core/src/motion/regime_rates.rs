@@ -26,7 +26,7 @@ pub(super) struct Springs {
 
 /// The equations of a regime in the coordinates of disturbances.
 pub(super) struct Rates<'a> {
-    of: &'a Transition<'a>,
+    pub(super) of: &'a Transition<'a>,
     pub(super) springs: Springs,
     /// What strains do to accelerations: strain, point, factor.
     roots: &'a [(usize, usize, f64)],
@@ -52,6 +52,11 @@ impl Transition<'_> {
         roots: &'a [(usize, usize, f64)],
     ) -> Rates<'a> {
         Rates { of: self, springs: self.springs(regime), roots }
+    }
+
+    /// Number of power series one after the other over a duration: the rounding of each grows with its exponential.
+    pub(super) fn steps(&self, duration: f64) -> usize {
+        (duration.abs() * self.system.rate(0.0) / LENGTH).ceil().max(1.0) as usize
     }
 
     /// The contacts in a regime.
@@ -103,11 +108,6 @@ impl Rates<'_> {
             difference,
         });
         rate
-    }
-
-    /// Number of power series one after the other over a duration: the rounding of each grows with its exponential.
-    pub(super) fn steps(&self, duration: f64) -> usize {
-        (duration.abs() * self.of.system.rate(0.0) / LENGTH).ceil().max(1.0) as usize
     }
 
     /// `factor A y`.
@@ -237,7 +237,7 @@ impl pulp::NullaryFnOnce for Series<'_> {
         let Self { rates, start: mut begin, times, across, out, place } = self;
         let longest =
             times.iter().fold(0.0_f64, |most, t| if t.abs() > most.abs() { *t } else { most });
-        let steps = rates.steps(longest);
+        let steps = rates.of.steps(longest);
         let step = longest / steps as f64;
         let step_of = |t: f64| ((t / step) as usize).min(steps - 1);
         let [mut next, mut end] = [(); 2].map(|()| vec![0.0; begin.len()]);

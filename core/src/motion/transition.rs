@@ -149,8 +149,8 @@ impl<'a> Transition<'a> {
                 self.slide(&phase.regime, series, *length, &mut total, loops);
             } else if let Some(lead) = leads[number] {
                 let reach = if change.is_some() { Reach::LAGGING } else { Reach::CAUGHT_UP };
-                let lasts = [lag + phase.duration, lead];
-                lag = self.advance(&phase.regime, lasts, reach, &mut total, known);
+                let duration = lag + phase.duration;
+                lag = self.advance(&phase.regime, [duration, lead], reach, &mut total, known);
             } else {
                 lag += phase.duration;
             }
