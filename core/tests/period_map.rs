@@ -246,6 +246,35 @@ fn multipliers_of_springs_are_differences_of_the_period() {
     }
 }
 
+/// A chain of as many masses on cubic springs, with more damping at one end.
+fn many_masses(size: usize) -> Sprung {
+    let chain = |i: usize, j: usize| match i.abs_diff(j) {
+        0 => 5.0 + 0.1 * i as f64,
+        1 => -2.0,
+        _ => 0.0,
+    };
+    Sprung {
+        mass: Mat::identity(size, size),
+        damping: Mat::from_fn(size, size, |i, j| if i == j { 0.1 + 0.02 * i as f64 } else { 0.0 }),
+        stiffness: Mat::from_fn(size, size, chain),
+        springs: (0..size).map(|dof| Spring::Cubic(dof, 1.0)).collect(),
+        load: vec![0.5; size],
+    }
+}
+
+/// Of many contacts the map is made by products of matrices, of few column by column.
+#[test]
+fn multipliers_of_many_springs_are_differences_of_the_period() {
+    let system = many_masses(12);
+    let model = system.model();
+    let point = solution(&model, 1.4, 41);
+    let map = PeriodMap::new(&model).unwrap();
+    let found = map.multipliers(1.4, point.unknowns().unwrap(), Some(1e-9)).unwrap();
+    let expected = system.differences(&point, 1000);
+    let error = apart(&found.values, &expected).max(apart(&expected, &found.values));
+    assert!(error < 1e-6, "{error:e}");
+}
+
 #[test]
 fn multipliers_of_friction_are_those_of_exact_orbits() {
     for (system, omega, harmonics) in [

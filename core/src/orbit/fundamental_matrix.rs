@@ -4,17 +4,20 @@
 use super::drift::Drift;
 use super::linear_path::{step, Displacements, Part, PartPath};
 use crate::contact::ReturnMapJacobian;
-use faer::Mat;
+use faer::linalg::matmul::matmul;
+use faer::{Accum, Mat, MatMut, MatRef, Par};
 use std::f64::consts::TAU;
 
 /// Steps per period of the laws before the march begins: as many as the search for their path took.
 pub(super) const SEARCH: usize = 512;
+/// Multiplications from which a product of matrices is worth its set-up.
+const LARGE: usize = 2000;
 
 /// What disturbances of a motion feel.
 pub(super) struct Linearised {
     pub(super) omega_squared: Vec<f64>,
-    /// Relative displacements by modes, point after point.
-    pub(super) rows: Vec<Vec<f64>>,
+    /// Relative displacements of the modes, point after point.
+    pub(super) shapes: Mat<f64>,
     pub(super) parts: Vec<Part>,
     /// Numbers of all laws' states.
     pub(super) states: usize,
@@ -29,9 +32,15 @@ pub(super) struct FundamentalMatrix<'a> {
     paths: &'a [PartPath],
     size: usize,
     /// Disturbances of modal displacements and velocities, and of the states of the laws.
-    rows: Vec<Vec<f64>>,
-    /// Those of the contact displacements.
-    contacts: Vec<Vec<f64>>,
+    rows: Vec<f64>,
+    /// Shapes of the modes at the points of laws that are no mere springs, and the first such point of every part.
+    shapes: Mat<f64>,
+    places: Vec<usize>,
+    /// Disturbances of their displacements, before the last step and now, …
+    before: Vec<f64>,
+    contacts: Vec<f64>,
+    /// … and of what the laws take off their forces.
+    loads: Vec<f64>,
     /// States of the laws, and their derivatives in the last step.
     states: Vec<Vec<f64>>,
     jacobians: Vec<ReturnMapJacobian>,
@@ -47,19 +56,28 @@ impl<'a> FundamentalMatrix<'a> {
     ) -> Self {
         let modes = map.omega_squared.len();
         let size = 2 * modes + map.states;
-        let unit = |i: usize| (0..size).map(|j| f64::from(u8::from(i == j))).collect();
+        let (mut points, mut places) = (Vec::new(), Vec::new());
+        for (part, path) in map.parts.iter().zip(paths) {
+            places.push(points.len());
+            let own = part.first..part.first + part.law.displacements();
+            points.extend(own.filter(|_| !path.linear));
+        }
         let mut run = Self {
             map,
             u,
             paths,
             size,
-            rows: (0..size).map(unit).collect(),
-            contacts: vec![vec![0.0; size]; map.rows.len()],
+            rows: vec![0.0; size * size],
+            shapes: Mat::from_fn(modes, points.len(), |mode, at| map.shapes[(points[at], mode)]),
+            places,
+            before: vec![0.0; size * points.len()],
+            contacts: vec![0.0; size * points.len()],
+            loads: vec![0.0; size * points.len()],
             states: paths.iter().map(|path| path.start.clone()).collect(),
             jacobians: vec![ReturnMapJacobian::default(); map.parts.len()],
         };
         for (j, scale) in run.scales(omega).into_iter().enumerate() {
-            run.rows[j][j] = scale;
+            run.rows[j * size + j] = scale;
         }
         // The states at the start of the run, from turn to turn: as many steps as the search took.
         for ((part, path), state) in map.parts.iter().zip(paths).zip(&mut run.states) {
@@ -94,98 +112,117 @@ impl<'a> FundamentalMatrix<'a> {
 
     /// Disturbances of the contact displacements.
     fn gather(&mut self) {
-        for (contact, shape) in self.contacts.iter_mut().zip(&self.map.rows) {
-            contact.fill(0.0);
-            for (row, b) in self.rows.iter().zip(shape) {
-                add(contact, *b, row);
-            }
-        }
+        let (size, points) = (self.size, self.shapes.ncols());
+        let modes = self.map.omega_squared.len();
+        let displacements =
+            MatRef::from_column_major_slice(&self.rows[..modes * size], size, modes);
+        let contacts = MatMut::from_column_major_slice_mut(&mut self.contacts, size, points);
+        product(contacts, Accum::Replace, [displacements, self.shapes.as_ref()], 1.0);
     }
 
+    /// The free motion over a step.
     pub(super) fn drift(&mut self, drift: &Drift) {
         self.damp(drift);
-        let modes = drift.modes.len();
-        let (displacements, rest) = self.rows.split_at_mut(modes);
-        for ((x, v), [a, b, c, d]) in displacements.iter_mut().zip(rest).zip(&drift.modes) {
+        let (size, modes) = (self.size, drift.modes.len());
+        let (displacements, rest) = self.rows.split_at_mut(modes * size);
+        let pairs = displacements.chunks_exact_mut(size).zip(rest.chunks_exact_mut(size));
+        for ((x, v), [a, b, c, d]) in pairs.zip(&drift.modes) {
             for (x, v) in x.iter_mut().zip(v) {
                 (*x, *v) = (a * *x + b * *v, c * *x + d * *v);
             }
         }
         self.damp(drift);
+        std::mem::swap(&mut self.before, &mut self.contacts);
+        self.gather();
     }
 
     fn damp(&mut self, drift: &Drift) {
         let Some(coupled) = &drift.coupled else { return };
-        let modes = drift.modes.len();
-        let before: Vec<Vec<f64>> = self.rows[modes..2 * modes].to_vec();
-        for (i, row) in self.rows[modes..2 * modes].iter_mut().enumerate() {
-            row.fill(0.0);
-            before.iter().enumerate().for_each(|(j, v)| add(row, coupled[(i, j)], v));
-        }
+        let (size, modes) = (self.size, drift.modes.len());
+        let velocities = &mut self.rows[modes * size..2 * modes * size];
+        let before = velocities.to_vec();
+        let before = MatRef::from_column_major_slice(&before, size, modes);
+        let velocities = MatMut::from_column_major_slice_mut(velocities, size, modes);
+        product(velocities, Accum::Replace, [before, coupled.transpose()], 1.0);
     }
 
-    /// Takes the laws and their disturbances from one angle to another.
+    /// Takes the laws and their disturbances from one angle to the next one, to which the motion has led.
     pub(super) fn follow(&mut self, from: f64, to: f64) {
-        let before = self.contacts.clone();
-        self.gather();
-        let modes = self.map.omega_squared.len();
+        let before = std::mem::take(&mut self.before);
+        self.advance([from, to], &before);
+        self.before = before;
+    }
+
+    /// Takes them past an event, at which nothing moves.
+    pub(super) fn pass(&mut self, from: f64, to: f64) {
+        let now = self.contacts.clone();
+        self.advance([from, to], &now);
+    }
+
+    fn advance(&mut self, [from, to]: [f64; 2], before: &[f64]) {
+        let (size, modes) = (self.size, self.map.omega_squared.len());
+        let mut fresh = Vec::new();
         for (index, part) in self.map.parts.iter().enumerate() {
             if self.paths[index].linear {
                 continue;
             }
             let jacobian = step(part, self.u, from, to, &mut self.states[index]);
             let (states, count) = (part.states.len(), part.law.displacements());
-            let first = 2 * modes + part.states.start;
-            let mut fresh = vec![vec![0.0; self.size]; states];
-            for (z, row) in fresh.iter_mut().enumerate() {
-                for (y, old) in self.rows[first..first + states].iter().enumerate() {
+            let first = (2 * modes + part.states.start) * size;
+            let own = self.places[index] * size..;
+            let old = &mut self.rows[first..first + states * size];
+            fresh.clear();
+            fresh.resize(states * size, 0.0);
+            for (z, row) in fresh.chunks_exact_mut(size).enumerate() {
+                for (y, old) in old.chunks_exact(size).enumerate() {
                     add(row, jacobian.by_state[z * states + y], old);
                 }
-                for i in 0..count {
-                    add(row, jacobian.by_before[z * count + i], &before[part.first + i]);
-                    add(row, jacobian.by_after[z * count + i], &self.contacts[part.first + i]);
+                let before = before[own.clone()].chunks_exact(size);
+                let after = self.contacts[own.clone()].chunks_exact(size);
+                for (i, (before, after)) in before.zip(after).take(count).enumerate() {
+                    add(row, jacobian.by_before[z * count + i], before);
+                    add(row, jacobian.by_after[z * count + i], after);
                 }
             }
-            for (row, fresh) in self.rows[first..].iter_mut().zip(fresh) {
-                *row = fresh;
-            }
+            old.copy_from_slice(&fresh);
             self.jacobians[index] = jacobian;
         }
     }
 
     /// What the laws take off the stuck contacts' forces acts for a time.
     pub(super) fn kick(&mut self, time: f64) {
-        let modes = self.map.omega_squared.len();
-        if let Some(circulatory) = &self.map.circulatory {
-            let (displacements, rest) = self.rows.split_at_mut(modes);
-            for (i, velocity) in rest[..modes].iter_mut().enumerate() {
-                for (j, displacement) in displacements.iter().enumerate() {
-                    add(velocity, -time * circulatory[(i, j)], displacement);
-                }
-            }
-        }
+        let (size, modes) = (self.size, self.map.omega_squared.len());
+        self.loads.fill(0.0);
         for (index, part) in self.map.parts.iter().enumerate() {
             if self.paths[index].linear {
                 continue;
             }
             let jacobian = &self.jacobians[index];
             let (states, count) = (part.states.len(), part.law.displacements());
-            let first = 2 * modes + part.states.start;
-            for i in 0..count {
-                let mut load = vec![0.0; self.size];
-                for j in 0..count {
+            let (first, own) =
+                ((2 * modes + part.states.start) * size, self.places[index] * size..);
+            let loads = self.loads[own.clone()].chunks_exact_mut(size).take(count);
+            for (i, load) in loads.enumerate() {
+                let contacts = self.contacts[own.clone()].chunks_exact(size).take(count);
+                for (j, contact) in contacts.enumerate() {
                     let kept = part.stiffness[(i, j)] - jacobian.force_by_after[i * count + j];
-                    add(&mut load, kept, &self.contacts[part.first + j]);
+                    add(load, kept, contact);
                 }
-                for z in 0..states {
-                    let by_state = jacobian.force_by_state[i * states + z];
-                    add(&mut load, -by_state, &self.rows[first + z]);
-                }
-                for (j, b) in self.map.rows[part.first + i].iter().enumerate() {
-                    add(&mut self.rows[modes + j], time * b, &load);
+                for (z, state) in self.rows[first..].chunks_exact(size).take(states).enumerate() {
+                    add(load, -jacobian.force_by_state[i * states + z], state);
                 }
             }
         }
+        let (displacements, rest) = self.rows.split_at_mut(modes * size);
+        let displacements = MatRef::from_column_major_slice(displacements, size, modes);
+        let velocities = &mut rest[..modes * size];
+        let mut velocities = MatMut::from_column_major_slice_mut(velocities, size, modes);
+        if let Some(circulatory) = &self.map.circulatory {
+            let pair = [displacements, circulatory.transpose()];
+            product(velocities.as_mut(), Accum::Add, pair, -time);
+        }
+        let loads = MatRef::from_column_major_slice(&self.loads, size, self.shapes.ncols());
+        product(velocities, Accum::Add, [loads, self.shapes.transpose()], time);
     }
 
     /// The matrix in units that do not grade it, without the states of contacts that never slip.
@@ -197,7 +234,25 @@ impl<'a> FundamentalMatrix<'a> {
             part.states.clone().for_each(|z| kept[2 * modes + z] = !path.linear);
         }
         let kept: Vec<usize> = (0..self.size).filter(|&i| kept[i]).collect();
-        Mat::from_fn(kept.len(), kept.len(), |i, j| self.rows[kept[i]][kept[j]] / scales[kept[i]])
+        Mat::from_fn(kept.len(), kept.len(), |i, j| {
+            self.rows[kept[i] * self.size + kept[j]] / scales[kept[i]]
+        })
+    }
+}
+
+/// A product of two matrices, times a factor, in place of `out` or on top of it: few numbers column by column.
+fn product(out: MatMut<'_, f64>, accum: Accum, [a, b]: [MatRef<'_, f64>; 2], factor: f64) {
+    if a.nrows() * a.ncols() * b.ncols() >= LARGE {
+        return matmul(out, accum, a, b, factor, Par::Seq);
+    }
+    for (j, mut column) in out.col_iter_mut().enumerate() {
+        if matches!(accum, Accum::Replace) {
+            column.fill(0.0);
+        }
+        for (k, a) in a.col_iter().enumerate() {
+            let weight = factor * b[(k, j)];
+            column.as_mut().iter_mut().zip(a.iter()).for_each(|(out, a)| *out += weight * a);
+        }
     }
 }
 
