@@ -78,3 +78,44 @@ def test_the_way_of_a_point_follows_from_the_model_alone() -> None:
     first, again = (ss.forced_response(model, omega) for _ in range(2))
     assert first.counters == again.counters
     np.testing.assert_array_equal(first.coefficients("d0"), again.coefficients("d0"))
+
+
+def pressed(ratio: float) -> ss.Model:
+    """Uneven chain on two contacts whose normal loads vary, so many times as stiff as it is."""
+    rng = np.random.default_rng([12, 1])
+    stiffness = in_a_row(1e4 * rng.uniform(0.8, 1.2, 7))
+    dofs = [f"d{i}" for i in range(6)]
+    chain = ss.Structure(np.eye(6), stiffness, ss.ModalDamping(1e-2), dofs)
+    pads = [
+        ss.Coulomb(
+            pair,
+            normal=[0, 1],
+            friction=0.4,
+            tangential_stiffness=1e4 * ratio,
+            normal_stiffness=1e4 * ratio,
+            preload=4.0,
+        )
+        for pair in (["d0", "d1"], ["d4", "d5"])
+    ]
+    forces = [
+        ss.Force(dof, float(rng.uniform(0.5, 3.0)), phase=float(rng.uniform(-3, 3))) for dof in dofs
+    ]
+    return ss.Model(chain, pads, forces)
+
+
+@pytest.mark.parametrize("ratio", [300.0, 3000.0])
+def test_exact_orbits_take_over_where_normal_loads_vary(ratio: float) -> None:
+    """Where laws are not monotone, too: such points had ended at the limit of effort.
+
+    The stiffer contacts ring at the 685th harmonic, which the error estimate had not seen.
+    """
+    model = pressed(ratio)
+    frf = ss.forced_response(model, [8.0])
+    exact = ss.exact_response(model, [8.0])
+    assert frf.converged[0] == (ratio < 1e3)
+    assert frf.arrays.solved.all()
+    assert frf.counters["orbits"] == 1
+    for dof in frf.dofs:
+        size = exact.amplitude(dof)[0]
+        error = abs(frf.amplitude(dof)[0] - size)
+        assert error <= frf.error_estimate(dof)[0] + 1e-3 * size

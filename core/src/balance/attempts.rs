@@ -31,7 +31,7 @@ impl ForcedBalance<'_> {
     ) -> Result<Point, Error> {
         let solved = self.attempt(resolution, omega, start)?;
         let failed = !matches!(solved.status, PointStatus::Converged | PointStatus::NotComputed);
-        if !failed || resolution.samples.is_some() || self.follows() {
+        if !failed || resolution.samples.is_some() || self.follows() || self.is_spent() {
             return Ok(solved);
         }
         let (found, by_fewer) = self.solve_by_fewer(resolution, omega)?;
@@ -40,7 +40,7 @@ impl ForcedBalance<'_> {
         }
         // Where many harmonics fail of which fewer have a solution, a homotopy takes long and hardly leads on.
         let hopeless = by_fewer && !self.has_short_homotopies(resolution.harmonics);
-        if solved.status != PointStatus::Stalled || hopeless {
+        if solved.status != PointStatus::Stalled || hopeless || self.is_spent() {
             return Ok(solved);
         }
         // Samples blur the edges between states at which an exact law may hold Newton's method up.
@@ -68,6 +68,7 @@ impl ForcedBalance<'_> {
         let interrupted = self.interruption();
         let mut equations = Condensed::new(model, &table, self.settings.residual, false);
         equations.watch(&interrupted);
+        equations.granted = self.left();
         if self.settings.method != Method::Newton {
             equations.densify();
         }

@@ -47,9 +47,10 @@ pub struct Condensed<'a> {
     /// Softened laws and their share of the stiffness, while a homotopy in it is under way.
     pub(super) softened: Option<(f64, Vec<Box<dyn ContactLaw>>)>,
     pub(super) interrupted: Option<&'a dyn Fn() -> bool>,
+    /// Work that it may take, as its profile counts it.
+    pub(super) granted: f64,
     pub(super) factor: Option<Factor>,
-    /// Sizes against which the motion of every point is accurate, at the unknowns whose tangents were
-    /// evaluated last.
+    /// Sizes against which the motion of every point is accurate, as of the last tangents.
     pub(super) sizes: Vec<f64>,
     pub(super) by_products: ByProducts,
     /// Whether nothing holds the mean in the last direction that was asked for.
@@ -85,6 +86,7 @@ impl<'a> Condensed<'a> {
             loss: 0.0,
             softened: None,
             interrupted: None,
+            granted: f64::INFINITY,
             factor: None,
             sizes: Vec::new(),
             by_products: ByProducts::default(),
@@ -102,8 +104,7 @@ impl<'a> Condensed<'a> {
         self.set_omega_beside(omega, None)
     }
 
-    /// [`Condensed::set_omega`] with the equations in other harmonics at the same frequency, whose
-    /// compliances need no second evaluation.
+    /// [`Condensed::set_omega`] beside the equations in other harmonics, whose compliances are taken over.
     pub(super) fn set_omega_beside(
         &mut self,
         omega: f64,

@@ -31,6 +31,7 @@ impl ForcedBalance<'_> {
     /// # Errors
     /// The loads themselves excite an undamped resonance.
     pub fn solve(&mut self, omega: f64, start: Option<&Unknowns>) -> Result<Point, Error> {
+        self.grant();
         let mut point = self.climb(omega, start)?;
         // Of an analysis that is to end a point is not what it would have come to.
         if point.status != PointStatus::Converged && self.is_ended() {
@@ -72,6 +73,10 @@ impl ForcedBalance<'_> {
                         if let Some(last) = self.instead_of(more, &point) {
                             return self.ended(last, resolution, &climb);
                         }
+                        if self.is_spent() {
+                            point.status = PointStatus::EffortLimit;
+                            return self.ended(point, resolution, &climb);
+                        }
                         start.clone_from(&point.unknowns);
                         climb.below = Some(point);
                         more
@@ -93,8 +98,9 @@ impl ForcedBalance<'_> {
         if let Some(exact) = self.orbit_below(solved, f64::INFINITY) {
             return Way::End(Box::new(exact));
         }
-        let easy = self.is_worth_a_homotopy(at.harmonics);
-        if climb.below.is_none() && !easy && !climb.from_below {
+        let goes_on = !self.is_spent();
+        let easy = self.is_worth_a_homotopy(at.harmonics) && goes_on;
+        if climb.below.is_none() && !easy && !climb.from_below && goes_on {
             climb.from_below = true;
             return Way::On(self.control.start_over());
         }

@@ -45,6 +45,10 @@ pub struct ForcedBalance<'a> {
     /// Frequencies at which nothing bounds the motion, once they are asked for [rad/s].
     pub(super) unbounded: OnceCell<Vec<f64>>,
     pub(super) profile: Profile,
+    /// Work that every point may take, if that is said …
+    pub(super) granted: f64,
+    /// … and the work of all points at which the one at hand has taken what it may.
+    pub(super) spent_at: f64,
 }
 
 /// Sample tables by highest harmonic.
@@ -117,6 +121,8 @@ impl<'a> ForcedBalance<'a> {
             share: 0.0,
             unbounded: OnceCell::new(),
             profile: Profile::default(),
+            granted: f64::INFINITY,
+            spent_at: f64::INFINITY,
         })
     }
 

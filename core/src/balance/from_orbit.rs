@@ -13,6 +13,11 @@ use faer::c64;
 
 /// Changes of state of a contact per period: two stops, and slip in both directions.
 const USUAL_EVENTS: usize = 4;
+/// How many times its price an orbit counts where laws are not monotone: a balance of its own leads to its start,
+/// and it may be another motion.
+const ASTRAY: f64 = 10.0;
+/// An estimate is above a fifth of the error but at one point of a thousand.
+const CAUTION: f64 = 5.0;
 /// Operations of an orbit that nobody waits for, some minutes.
 const LONGEST_WAIT: f64 = 1e11;
 
@@ -20,16 +25,24 @@ impl ForcedBalance<'_> {
     /// The point that ends the climb at a solution for which `more` harmonics would be too dear:
     /// the exact orbit, or the solution as it is.
     pub(super) fn instead_of(&mut self, more: Resolution, solved: &Point) -> Option<Point> {
-        let slipping = self.nonlinear_points(solved);
-        let price = self.price(slipping);
-        let (balance, affordable) = (price.of(more.harmonics), price.affordable());
-        if more.harmonics <= solved.harmonics || balance <= TRIFLE {
-            return None;
-        }
+        let [balance, affordable] = self.prices_of(more, solved)?;
         self.orbit_below(solved, balance.min(affordable)).or_else(|| {
             let status = PointStatus::EffortLimit;
             (balance > affordable).then(|| Point { status, ..solved.clone() })
         })
+    }
+
+    /// Whether `more` harmonics than those of a solution would be too dear.
+    pub(super) fn is_too_dear(&self, more: Resolution, solved: &Point) -> bool {
+        self.prices_of(more, solved).is_some_and(|[balance, affordable]| balance > affordable)
+    }
+
+    /// What `more` harmonics than those of a solution cost, and what they may; nothing if they are a trifle.
+    fn prices_of(&self, more: Resolution, solved: &Point) -> Option<[f64; 2]> {
+        let price = self.price(self.nonlinear_points(solved));
+        let (balance, affordable) = (price.of(more.harmonics), price.affordable());
+        let climbs = more.harmonics > solved.harmonics && balance > TRIFLE;
+        climbs.then_some([balance, affordable])
     }
 
     /// The exact orbit where automatic harmonics have come to their limit.
@@ -69,16 +82,39 @@ impl ForcedBalance<'_> {
     }
 
     /// The exact orbit, if it costs less than `most` operations with the events of a solution. Where
-    /// laws are not monotone it may be another motion than that of the solution.
+    /// laws are not monotone it has to be the motion of a solution; where there is none it is a motion as good as
+    /// any other, unless it is one of many by what its contacts keep.
     pub(super) fn orbit_below(&mut self, solved: &Point, most: f64) -> Option<Point> {
-        let wanted = self.control.only_harmonics_climb() && self.model.is_monotone();
-        let orbits = self.rescue.filter(|_| wanted)?;
+        let orbits = self.rescue.filter(|_| self.control.only_harmonics_climb())?;
         let events = self.events(solved);
         let price = orbits.price(solved.omega, events, self.orbit_order())?;
-        if price > most {
+        let of = solved.unknowns().filter(|_| solved.is_solved() && !self.model.is_monotone());
+        let share = if of.is_some() { ASTRAY } else { 1.0 };
+        if share * price > most {
             return None;
         }
-        self.point_of_orbit(solved.omega, solved.harmonics)
+        let order = self.orbit_order();
+        let orbit = match of {
+            Some(motion) => orbits.orbit_of(motion, solved.omega, order),
+            None => orbits.orbit(solved.omega, order),
+        }?;
+        let suits = match of {
+            _ if self.model.is_monotone() => true,
+            Some(_) => self.is_same_motion(solved, &orbit),
+            None => !orbits.is_one_of_many(solved.omega),
+        };
+        suits.then(|| self.point_of_orbit(&orbit, solved.harmonics)).flatten()
+    }
+
+    /// Whether an orbit is the motion of a solution, as closely as its error estimate says or the tolerance asks.
+    fn is_same_motion(&self, solved: &Point, orbit: &Point) -> bool {
+        let (own, all) = (solved.harmonics + 1, orbit.harmonics + 1);
+        let rows = solved.displacement.chunks_exact(own).zip(orbit.displacement.chunks_exact(all));
+        let apart = rows.map(|(x, y)| x.iter().zip(y).skip(1).map(|(x, y)| (x - y).norm()).sum());
+        let apart = self.scale.relative(solved, OF_HARMONICS, apart);
+        let estimate = solved.error_estimate.iter().copied();
+        let error = self.scale.relative(solved, OF_HARMONICS, estimate);
+        apart <= CAUTION * error.max(self.settings.tolerance)
     }
 
     /// Changes of contact states per period in a solution.
@@ -100,13 +136,12 @@ impl ForcedBalance<'_> {
         (2 * self.settings.max_harmonics).min(HIGHEST_ORDER)
     }
 
-    /// The point of the exact orbit, with at least the harmonics `least` and as many as the
-    /// tolerance asks for; `None` if there is no orbit.
-    fn point_of_orbit(&mut self, omega: f64, least: usize) -> Option<Point> {
-        let orbit = self.rescue?.orbit(omega, self.orbit_order())?;
+    /// The point of an exact orbit, with at least the harmonics `least` and as many as the
+    /// tolerance asks for.
+    fn point_of_orbit(&mut self, orbit: &Point, least: usize) -> Option<Point> {
         let mut truncated = None;
         for order in self.control.orders_from(least) {
-            let mut point = truncate(&orbit, order, self.half_wave());
+            let mut point = truncate(orbit, order, self.half_wave());
             self.scale.include(&point);
             let errors = point.error_estimate.iter().copied();
             let error = self.scale.relative(&point, OF_HARMONICS, errors);
@@ -141,7 +176,8 @@ fn truncate(orbit: &Point, order: usize, half_wave: bool) -> Point {
     for (amplitudes, series) in series.zip(values.chunks_exact_mut(harmonics.slots())) {
         harmonics.write_series(amplitudes, series);
     }
-    let error_estimate: Vec<f64> = orbit.displacement.chunks_exact(all).map(left).collect();
+    let rows = orbit.displacement.chunks_exact(all).zip(&orbit.error_estimate);
+    let error_estimate: Vec<f64> = rows.map(|(row, unseen)| left(row) + unseen).collect();
     Point {
         harmonics: order,
         displacement: kept(&orbit.displacement),

@@ -41,6 +41,7 @@ impl Condensed<'_> {
         });
         self.profile.law += law_time;
         self.profile.evaluations += 1;
+        self.profile.work += self.work_of_laws(&loads, tangent);
         if tangent {
             self.loads = loads;
             self.factor = None;
@@ -210,6 +211,10 @@ impl System for Condensed<'_> {
         self.interrupted.is_some_and(|ask| ask())
     }
 
+    fn is_spent(&self) -> bool {
+        self.profile.work >= self.granted
+    }
+
     fn solve(&mut self, rhs: &[f64], step: &mut [f64]) -> bool {
         let start = std::time::Instant::now();
         step.copy_from_slice(rhs);
@@ -220,6 +225,7 @@ impl System for Condensed<'_> {
             self.take_products_again();
             self.factorise();
             self.profile.factorisations += 1;
+            self.profile.work += self.work_of_factors();
         }
         if matches!(self.factor, Some(Factor::Krylov(_))) && !self.solve_by_products(rhs, step) {
             if self.interrupted() || !self.form_instead() {
@@ -227,6 +233,7 @@ impl System for Condensed<'_> {
             }
             self.factorise();
             self.profile.factorisations += 1;
+            self.profile.work += self.work_of_factors();
         }
         let harmonics = self.table.harmonics();
         match (&self.factor, &self.linear) {

@@ -45,6 +45,7 @@ mod statics;
 mod tangent;
 mod unknowns;
 mod without_bound;
+mod work;
 
 pub(crate) use cycle::oscillation;
 pub use cycle::{CycleBalance, Onset};
@@ -81,6 +82,11 @@ pub use crate::progress::Progress;
 pub trait ExactOrbits {
     /// The orbit at a frequency [rad/s] with its harmonics up to `highest`, if there is one.
     fn orbit(&self, omega: f64, highest: usize) -> Option<Point>;
+
+    /// The same where others are possible, from the first motion that is given at the frequency: it is sought once.
+    fn orbit_of(&self, _motion: &Unknowns, omega: f64, highest: usize) -> Option<Point> {
+        self.orbit(omega, highest)
+    }
 
     /// Floating-point operations that it takes if contacts change their states `events` times per
     /// period; `None` if there is no such orbit.

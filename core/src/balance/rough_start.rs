@@ -54,6 +54,7 @@ impl ForcedBalance<'_> {
         let interrupted = self.interruption();
         let mut equations = Condensed::new(model, &table, self.settings.residual, false);
         equations.watch(&interrupted);
+        equations.granted = self.left();
         let mut x = start.recast(table.harmonics());
         let found = equations.set_omega(omega).is_ok() && {
             let (mut defect, mut step) = (vec![0.0; x.len()], vec![0.0; x.len()]);
@@ -112,6 +113,7 @@ impl ForcedBalance<'_> {
         let interrupted = self.interruption();
         let mut equations = Condensed::new(model, &table, self.settings.residual, false);
         equations.watch(&interrupted);
+        equations.granted = self.left();
         if equations.set_omega(omega).is_err() {
             return Ok(None);
         }

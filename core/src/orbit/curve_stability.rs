@@ -15,6 +15,9 @@ const SENSITIVITY: f64 = 30.0;
 /// … and beyond 150 where contacts bounce: when they touch is less certain than how far they move.
 const BOUNCING: f64 = 300.0;
 
+/// Work that the solution with more harmonics than the tolerance asks for may take, as reckoned \[ns\].
+const OF_VERDICT: f64 = 1e9;
+
 /// Decides the stability of the points of a curve, as far as the map over a period tells it; those of a
 /// travelling wave stay undecided. `settings` are those of its balance.
 ///
@@ -97,6 +100,9 @@ fn with_more_harmonics(
 ) -> Option<Point> {
     let finer = Settings { harmonics: HarmonicChoice::Fixed(2 * point.harmonics + 1), ..settings };
     let mut balance = ForcedBalance::new(model, finer, &[]).ok()?.watched(progress);
+    if settings.harmonics == HarmonicChoice::Auto {
+        balance = balance.granting(OF_VERDICT);
+    }
     let solved = balance.solve(point.omega, point.unknowns()).ok()?;
     solved.is_solved().then_some(solved)
 }

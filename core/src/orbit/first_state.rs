@@ -1,7 +1,7 @@
 //! Where the search for an exact orbit begins: the state of a neighbour, or of a harmonic balance.
 
 use super::periodic::PeriodicOrbits;
-use super::shooting::Shooting;
+use super::shooting::{Shooting, STEPS};
 use super::start::{later, start_of};
 use crate::balance::{ForcedBalance, HarmonicChoice, PointStatus, Settings};
 use crate::motion::State;
@@ -17,6 +17,8 @@ const NEAR: f64 = 1e-4;
 /// error up to which that goes on.
 const FAR_BETTER: f64 = 1e-2;
 const WELL: f64 = 1e-3;
+/// Work that a start may take of orbits that are granted little, as reckoned \[ns\].
+const OF_START: f64 = 2e9;
 /// Of a balance where one motion alone is possible: the harmonics it lacks count for more than its error. Elsewhere
 /// sliders keep where it leaves them.
 const BALANCED: NewtonSettings = NewtonSettings { tolerance: 1e-4, max_iterations: 100 };
@@ -76,7 +78,11 @@ impl PeriodicOrbits<'_> {
             return rest;
         };
         balance = balance.watched(self.progress).unjudged();
-        let known = self.balanced.take().filter(|_| self.plan.unique);
+        if self.plan.granted < STEPS {
+            balance = balance.granting(OF_START);
+        }
+        let given = std::mem::take(&mut self.given);
+        let known = self.balanced.take().filter(|_| self.plan.unique || given);
         let found = balance.solve(omega, known.as_ref());
         self.balanced = found.as_ref().ok().and_then(|point| point.unknowns().cloned());
         match found {

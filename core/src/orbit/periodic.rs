@@ -42,6 +42,8 @@ pub struct PeriodicOrbits<'a> {
     pub(super) everywhere: Vec<usize>,
     /// The last balance that an orbit began with, and whether a neighbour was no better.
     pub(super) balanced: Option<Unknowns>,
+    /// Whether it is the motion whose orbit is sought.
+    pub(super) given: bool,
     pub(super) beyond: bool,
     pub(super) quadrature: Quadrature,
     /// What is known of the stretches of earlier orbits.
@@ -61,6 +63,7 @@ impl<'a> Plan<'a> {
             plan: self,
             sliders: Vec::new(),
             balanced: None,
+            given: false,
             beyond: false,
             quadrature: Quadrature::default(),
             propagators: Propagators::default(),
@@ -90,6 +93,11 @@ impl<'a> PeriodicOrbits<'a> {
     pub(super) fn granted(mut self, steps: usize) -> Self {
         self.plan.granted = self.plan.granted.min(steps);
         self
+    }
+
+    /// Has the balance of the next orbit begin with a motion at its frequency.
+    pub(super) fn begin_with(&mut self, motion: Unknowns) {
+        (self.balanced, self.given) = (Some(motion), true);
     }
 
     pub(super) fn system(&self) -> &ModalSystem {

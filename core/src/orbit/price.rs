@@ -19,6 +19,9 @@ const PRODUCTS: f64 = 8.0;
 const SPEED: f64 = 4.0;
 /// Operations of eigenvalues over the third power of the size.
 const EIGENVALUES: f64 = 25.0;
+/// Operations in the time that series of a plane, or of a contact that slips little by little, take besides.
+const PER_PLANE: f64 = 1e4;
+const PER_LOOP: f64 = 6e4;
 /// Nodes of a quadrature per step, and operations per node and harmonic.
 const NODES: f64 = 20.0;
 const PER_HARMONIC: f64 = 2.0;
@@ -47,9 +50,12 @@ pub(super) fn orbit_price(
     PASSES * pass + EIGENVALUES * cube + survey
 }
 
-/// Steps of the flow that `operations` pay for.
+/// Steps of the flow that `operations` pay for. What follows a loop or the slip in a plane takes many times as
+/// long as its products tell.
 pub(super) fn steps_for(system: &ModalSystem, operations: f64) -> usize {
-    (operations / step_price(system)) as usize
+    let slow =
+        PER_PLANE * system.planes().len() as f64 + PER_LOOP * system.microslips().len() as f64;
+    (operations / (step_price(system) + slow)) as usize
 }
 
 /// What a transition matrix over so many stretches costs, in passes along an orbit of so many steps.

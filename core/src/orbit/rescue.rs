@@ -1,11 +1,12 @@
 //! Exact orbits for a harmonic balance: a start where Newton's method fails, and the answer where
 //! more harmonics would cost more. A passive system always has one.
 
+use super::closed::Orbit;
 use super::periodic::{PeriodicOrbits, FASTEST};
 use super::price::{orbit_price, steps_for};
 use super::settings::OrbitSettings;
 use super::settled::Settled;
-use crate::balance::{ExactOrbits, Point, PointStatus, Progress};
+use crate::balance::{ExactOrbits, Point, PointStatus, Progress, Unknowns};
 use crate::contact::Residual;
 use crate::model::Model;
 use crate::motion::State;
@@ -15,6 +16,14 @@ use std::cell::{Cell, RefCell};
 /// Operations that one search may take, transition matrices included: a second or two.
 const PATIENCE: f64 = 2e9;
 
+/// Where an orbit began.
+struct Known {
+    omega: f64,
+    start: State,
+    /// Whether it is one of many.
+    many: bool,
+}
+
 /// Finds exact orbits on demand.
 pub struct OrbitInitialGuess<'a> {
     model: &'a Model,
@@ -23,11 +32,13 @@ pub struct OrbitInitialGuess<'a> {
     progress: &'a Progress<'a>,
     /// Prepared when they are first needed; `None` inside if there is nothing to prepare.
     orbits: RefCell<Option<Option<PeriodicOrbits<'a>>>>,
-    /// Frequency and start of the last orbit, which may be asked for again with more harmonics, and whether
-    /// it is one of many.
-    last: RefCell<Option<(f64, State, bool)>>,
+    /// The last orbit, which may be asked for again with more harmonics, and the last that began with a motion.
+    last: RefCell<Option<Known>>,
+    of_motion: RefCell<Option<Known>>,
     /// Frequency at which no orbit was found last: a longer search is not granted, and none is repeated.
     missed: Cell<f64>,
+    /// Frequency at which a search has begun with a given motion last, and whether it led to an orbit.
+    begun: Cell<(f64, bool)>,
     /// Frequency and motion that settled last, if one did: it is asked for with many numbers of harmonics.
     settled: RefCell<Option<(f64, Option<Settled>)>>,
 }
@@ -49,7 +60,9 @@ impl<'a> OrbitInitialGuess<'a> {
             progress,
             orbits: RefCell::new(None),
             last: RefCell::new(None),
+            of_motion: RefCell::new(None),
             missed: Cell::new(f64::NAN),
+            begun: Cell::new((f64::NAN, false)),
             settled: RefCell::new(None),
         }
     }
@@ -64,6 +77,29 @@ impl<'a> OrbitInitialGuess<'a> {
         });
         work(orbits.as_mut()?)
     }
+
+    /// The orbit from where the last one of its kind at the same frequency began, if there was one.
+    fn search(&self, known: &RefCell<Option<Known>>, omega: f64, highest: usize) -> Option<Point> {
+        self.with(|orbits| {
+            orbits.report_up_to(highest);
+            let last = known.take().filter(|last| last.omega == omega);
+            let found = orbits.solve(omega, last.as_ref().map(|last| &last.start)).ok()?;
+            // Of laws with constant limits sliders at rest leave the vibration as it is.
+            let many = orbits.depends_on_sliders() && found.neutral > 0;
+            let start = found.start().cloned();
+            known.replace(start.map(|start| Known { omega, start, many }));
+            (found.response.status == PointStatus::Converged).then(|| with_unseen(found))
+        })
+    }
+}
+
+/// The harmonics of an orbit, with what those above them change in its half ranges: contacts may ring there.
+fn with_unseen(orbit: Orbit) -> Point {
+    let (exact, mut response) = (orbit.half_ranges(), orbit.response);
+    let seen = response.half_ranges();
+    let unseen = exact.iter().zip(&seen).map(|(exact, seen)| (exact - seen).abs());
+    response.error_estimate.iter_mut().zip(unseen).for_each(|(error, unseen)| *error += unseen);
+    response
 }
 
 impl ExactOrbits for OrbitInitialGuess<'_> {
@@ -71,18 +107,24 @@ impl ExactOrbits for OrbitInitialGuess<'_> {
         if self.missed.get() == omega {
             return None;
         }
-        let found = self.with(|orbits| {
-            orbits.report_up_to(highest);
-            let last = self.last.take().filter(|(known, ..)| *known == omega);
-            let found = orbits.solve(omega, last.as_ref().map(|(_, start, _)| start)).ok()?;
-            // Of laws with constant limits sliders at rest leave the vibration as it is.
-            let many = orbits.depends_on_sliders() && found.neutral > 0;
-            self.last.replace(found.start().cloned().map(|start| (omega, start, many)));
-            (found.response.status == PointStatus::Converged).then_some(found.response)
-        });
+        let found = self.search(&self.last, omega, highest);
         if found.is_none() {
             self.missed.set(omega);
         }
+        found
+    }
+
+    fn orbit_of(&self, motion: &Unknowns, omega: f64, highest: usize) -> Option<Point> {
+        let (begun, led) = self.begun.get();
+        if begun == omega && !led {
+            return None;
+        }
+        if begun != omega {
+            self.of_motion.take();
+            self.with(|orbits| Some(orbits.begin_with(motion.clone())));
+        }
+        let found = self.search(&self.of_motion, omega, highest);
+        self.begun.set((omega, found.is_some()));
         found
     }
 
@@ -108,6 +150,6 @@ impl ExactOrbits for OrbitInitialGuess<'_> {
     }
 
     fn is_one_of_many(&self, omega: f64) -> bool {
-        self.last.borrow().as_ref().is_some_and(|(known, _, many)| *known == omega && *many)
+        self.last.borrow().as_ref().is_some_and(|last| last.omega == omega && last.many)
     }
 }

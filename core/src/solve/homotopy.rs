@@ -48,6 +48,7 @@ pub fn homotopy(
                 break;
             }
             Outcome::Interrupted => break,
+            _ if system.is_spent() => break,
             _ => {}
         }
     }
@@ -69,7 +70,7 @@ pub fn homotopy(
             x.copy_from_slice(&trial);
             logarithm = next;
             step *= 1.5;
-        } else if report.outcome == Outcome::Interrupted || system.is_lost() {
+        } else if report.outcome == Outcome::Interrupted || system.is_lost() || system.is_spent() {
             break;
         } else {
             step *= 0.5;

@@ -77,6 +77,11 @@ pub trait System {
         false
     }
 
+    /// Whether all work that was granted is done: the iteration ends as one that leads nowhere.
+    fn is_spent(&self) -> bool {
+        false
+    }
+
     /// Solves `J step = rhs` with the Jacobian at the last `x` that [`System::residual`] was called
     /// with; `false` if J is singular.
     fn solve(&mut self, rhs: &[f64], step: &mut [f64]) -> bool;

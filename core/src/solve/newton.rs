@@ -152,6 +152,9 @@ impl<'a, S: System> Newton<'a, S> {
         if self.system.interrupted() {
             return Some(Checkpoint::Interrupted);
         }
+        if self.system.is_spent() {
+            return Some(Checkpoint::NoLength);
+        }
         let solvable = self.size_of_residual.is_finite()
             && self.system.solve(&self.residual, &mut self.step)
             && norm(&self.step).is_finite();
@@ -269,5 +272,51 @@ impl<'a, S: System> Newton<'a, S> {
     fn report(&self, outcome: Outcome, iterations: usize) -> Report {
         let residual = self.size_of_residual / norm(self.x).max(f64::MIN_POSITIVE);
         Report { outcome, iterations, residual }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// x² = 2, with work for so many evaluations.
+    struct Granted {
+        left: usize,
+        slope: f64,
+    }
+
+    impl System for Granted {
+        fn size(&self) -> usize {
+            1
+        }
+
+        fn residual(&mut self, x: &[f64], out: &mut [f64]) {
+            self.slope = 2.0 * x[0];
+            self.value(x, out);
+        }
+
+        fn value(&mut self, x: &[f64], out: &mut [f64]) {
+            self.left = self.left.saturating_sub(1);
+            out[0] = x[0] * x[0] - 2.0;
+        }
+
+        fn solve(&mut self, rhs: &[f64], step: &mut [f64]) -> bool {
+            step[0] = rhs[0] / self.slope;
+            true
+        }
+
+        fn is_spent(&self) -> bool {
+            self.left == 0
+        }
+    }
+
+    #[test]
+    fn an_iteration_ends_when_its_work_is_spent() {
+        for (left, outcome) in [(100, Outcome::Converged), (3, Outcome::Stalled)] {
+            let mut system = Granted { left, slope: f64::NAN };
+            let report = newton(&mut system, &mut [30.0], NewtonSettings::default());
+            assert_eq!(report.outcome, outcome);
+            assert!(report.iterations <= left);
+        }
     }
 }

@@ -31,15 +31,13 @@ impl Walk<'_, '_> {
         }
         match self.balance.judge(point) {
             Decision::Enough => None,
-            Decision::More(more) => match self.balance.instead_of(more, point) {
-                // An orbit in its place might lie on another branch.
-                Some(dear) if dear.status == PointStatus::EffortLimit => {
-                    point.status = dear.status;
-                    self.balance.control.stay(at);
-                    None
-                }
-                _ => Some(more).filter(|more| *more != at),
-            },
+            // An orbit in its place might lie on another branch.
+            Decision::More(more) if self.balance.is_too_dear(more, point) => {
+                point.status = PointStatus::EffortLimit;
+                self.balance.control.stay(at);
+                None
+            }
+            Decision::More(more) => Some(more).filter(|more| *more != at),
             Decision::Limit(limit) => {
                 point.status = limit;
                 self.balance.control.stay(at);
