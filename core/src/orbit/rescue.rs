@@ -121,7 +121,10 @@ impl ExactOrbits for OrbitInitialGuess<'_> {
         }
         if begun != omega {
             self.of_motion.take();
-            self.with(|orbits| Some(orbits.begin_with(motion.clone())));
+            self.with(|orbits| {
+                orbits.begin_with(motion.clone());
+                Some(())
+            });
         }
         let found = self.search(&self.of_motion, omega, highest);
         self.begun.set((omega, found.is_some()));
