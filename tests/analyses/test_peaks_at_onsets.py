@@ -37,19 +37,32 @@ def test_a_peak_beside_an_antiresonance_of_the_contact_is_found(harmonics):
     assert curve.amplitude[0] >= (1 - 1e-6) * fine.amplitude("q5").max()
 
 
-@pytest.mark.parametrize("value", [1.6451, 1.8552])
-def test_the_slope_of_a_peak_at_the_onset_of_slip_follows_it(value):
+def four_masses(slip_force):
     stiffness = np.diag([16391.0, 18112.0, 17987.0, 17159.0])
     stiffness -= 920.0 * (np.eye(4, k=1) + np.eye(4, k=-1))
     damping = ss.Rayleigh(mass=0.02, stiffness=1.25e-6)
     structure = ss.Structure(np.eye(4), stiffness, damping, ["a", "b", "c", "d"])
     forces = [ss.Force("c", 0.79, phase=2.27), ss.Force("a", 0.58, phase=3.86)]
-    model = ss.Model(structure, [ss.Jenkins("c", stiffness=7.8e4, slip_force=1.0)], forces)
+    contact = ss.Jenkins("c", stiffness=7.8e4, slip_force=slip_force)
+    return ss.Model(structure, [contact], forces)
+
+
+@pytest.mark.parametrize("value", [1.6451, 1.8552])
+def test_the_slope_of_a_peak_at_the_onset_of_slip_follows_it(value):
     values = value * (1.0 + np.array([-1e-4, 0.0, 1e-4]))
-    curve = ss.damper_curve(model, slip_force=values, dof="d", harmonics=1)
+    curve = ss.damper_curve(four_masses(1.0), slip_force=values, dof="d", harmonics=1)
     difference = (curve.amplitude[2] - curve.amplitude[0]) / (values[2] - values[0])
     assert difference > 0.0
     assert curve.sensitivity[1] == pytest.approx(difference, rel=5e-3)
+    span = curve.settings.span
+    frf = ss.forced_response(four_masses(value), np.linspace(*span, 60), 1)
+    assert frf.peak("d").amplitude == pytest.approx(curve.amplitude[1], rel=1e-7)
+    slopes = frf.peak_sensitivity("d")
+    assert slopes["jenkins", "slip_force"] == pytest.approx(difference, rel=5e-3)
+    assert frf.peak_sensitivity("d", parameter="slip_force") == slopes["jenkins", "slip_force"]
+    # Forces and limits grow together with the motion.
+    level = frf.peak_sensitivity("d", parameter="level")
+    assert level == pytest.approx(frf.peak("d").amplitude - value * difference, rel=5e-3)
 
 
 def test_an_optimum_lies_at_no_value_where_a_search_errs():

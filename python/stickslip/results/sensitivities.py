@@ -12,6 +12,7 @@ from stickslip.errors import ModelError
 from stickslip.model import Model, PointRef
 from stickslip.results.arrays import Arrays, Float, Measure, amplitude_of, constant
 from stickslip.results.contact_motion import ContactMotion
+from stickslip.results.peaks import Peak
 from stickslip.results.periodic import key_of
 from stickslip.settings.balance import BalanceSettings
 
@@ -20,6 +21,12 @@ COMMON = {"level": "m", "omega": "m s/rad"}
 
 _SAME = 0.05
 """Relative difference of two amplitudes up to which they are those of one branch."""
+
+_STEEP = 1e-3
+"""Slope in the frequency, relative to height and frequency, of a peak that is beside a corner."""
+
+_BESIDE = np.array([1e-9, 1e-8, 1e-7, 1e-6, 1e-5])
+"""Relative distances within which the place of a corner is known: the other side is behind."""
 
 Cause: TypeAlias = "str | tuple[int, int | None, str]"
 
@@ -117,7 +124,9 @@ class Sensitivities(ContactMotion):
 
         The frequency of the peak moves with the parameter, but the amplitude is stationary in it:
         the derivative of the peak is that of the amplitude at its frequency. Of a curve that folds
-        it follows from the computed points around the peak, and is as exact as they are close.
+        it follows from the computed points around the peak, and is as exact as they are close. At a
+        corner, where slip begins, the amplitude is not stationary: the peak is where the curves of
+        both sides meet, and its derivative is that of their crossing.
 
         Raises ModelError as `sensitivity` and `ForcedResponse.peak`.
 
@@ -139,24 +148,47 @@ class Sensitivities(ContactMotion):
             )
         causes = _causes(self.model, contact, parameter)
         peak = self.peak(dof, measure)
+        everything = [*causes.values(), "omega"]
+        arrays = self._solved_at(np.array([peak.omega]), dof, measure)
+        slopes = self._slopes(arrays, dof, everything, measure)[0]
+        if not self.model.problem.laws_not_monotone:
+            slopes = self._of_corner(peak, slopes, dof, everything, measure)
+        elif not np.isinf(peak.amplitude):
+            height = amplitude_of(arrays.displacement[:, :, 0], measure)[0]
+            other = not np.isclose(height, peak.amplitude, rtol=_SAME, atol=0.0)
+            if other or self.arrays.fold.any():
+                slopes = np.append(self._along(dof, list(causes.values()), measure), 0.0)
+        slopes = slopes[:-1]
+        if parameter is None:
+            return {name: float(slope) for name, slope in zip(causes, slopes, strict=True)}
+        return float(slopes.sum())
+
+    def _solved_at(self, omega: Float, dof: str, measure: Measure) -> Arrays:
+        """Return the responses at frequencies that are solved for."""
         there = _core.forced_response(
             self.model.problem,
-            np.array([peak.omega]),
+            omega,
             np.array([self.model.structure.index(key_of(dof, measure)[0])]),
             np.array([], dtype=np.int64),
             BalanceSettings.of(**self.settings.part(BalanceSettings)),
             None,
         )
-        arrays = Arrays.of(there)
-        slopes = self._slopes(arrays, dof, list(causes.values()), measure)[0]
-        if self.model.problem.laws_not_monotone and not np.isinf(peak.amplitude):
-            height = amplitude_of(arrays.displacement[:, :, 0], measure)[0]
-            other = not np.isclose(height, peak.amplitude, rtol=_SAME, atol=0.0)
-            if other or self.arrays.fold.any():
-                slopes = self._along(dof, list(causes.values()), measure)
-        if parameter is None:
-            return {name: float(slope) for name, slope in zip(causes, slopes, strict=True)}
-        return float(slopes.sum())
+        return Arrays.of(there)
+
+    def _of_corner(
+        self, peak: Peak, slopes: Float, dof: str, causes: list[Cause], measure: Measure
+    ) -> Float:
+        """Return the derivatives of the height of a peak, whose own end with that in frequency."""
+        rise, steep = slopes[-1], _STEEP * peak.amplitude / peak.omega
+        if peak.at_edge or not abs(rise) > steep:
+            return slopes
+        beside = peak.omega * (1.0 + np.sign(rise) * _BESIDE)
+        for others in self._slopes(self._solved_at(beside, dof, measure), dof, causes, measure):
+            fall = others[-1]
+            if rise * fall < 0.0 and abs(fall) > steep:
+                crossing: Float = (rise * others - fall * slopes) / (rise - fall)
+                return crossing
+        return slopes
 
     def _along(self, dof: str, causes: list[Cause], measure: Measure) -> Float:
         """Return the derivatives of the height of the peak of a branch, from its highest points.
