@@ -11,6 +11,7 @@ use super::solution::{Point, PointStatus};
 use super::tangent::Tangent;
 use super::unknowns::Unknowns;
 use super::{ExactOrbits, Kept, Progress};
+use crate::contact::PointSummary;
 use crate::fourier::{Harmonics, SampleTable};
 use crate::model::Model;
 use crate::solve::System as _;
@@ -268,7 +269,16 @@ impl<'a> ForcedBalance<'a> {
         }
         let x = equations.stuck_response().to_vec();
         equations.residual(&x, &mut vec![0.0; x.len()]);
-        Ok(equations.is_linear())
+        if equations.is_linear() || !self.is_monotone() {
+            return Ok(equations.is_linear());
+        }
+        // A contact that carries a mean has a tangent, and does not slip for that.
+        let mut laws = self.model.laws().iter().zip(self.model.points()).enumerate();
+        Ok(laws.all(|(index, (law, points))| {
+            let mut own = vec![PointSummary::default(); points.len()];
+            law.summary(equations.motion(index, &x), &mut own);
+            own.iter().all(|point| point.slip_fraction == 0.0)
+        }))
     }
 
     /// Harmonics that loads act at, ascending, but for a static one.

@@ -192,6 +192,32 @@ impl Envelope {
         self.gaps.splice(first..first + replaced, parts);
     }
 
+    /// The interval in which the curve of a group has a kink and may be higher than its highest point by the
+    /// share `gain`, if it keeps the slope with which it leaves an end; the one in which it may be highest.
+    pub(super) fn most_kinked(&self, gain: f64) -> Option<usize> {
+        let heights: Vec<f64> = (0..self.groups.len()).map(|group| self.height(group)).collect();
+        let curves = || {
+            self.groups
+                .iter()
+                .zip(&heights)
+                .flat_map(|(group, height)| group.clone().map(move |curve| (curve, height)))
+        };
+        let mut best = (None, 1.0 + gain);
+        for (i, (gap, ends)) in self.intervals().enumerate() {
+            if gap.closed || self.is_shortest(ends) || (ends[0].sticks() && ends[1].sticks()) {
+                continue;
+            }
+            for (curve, height) in curves() {
+                let between = [ends[0].knots[curve], ends[1].knots[curve]];
+                let reach = Knot::persisting(between) / height;
+                if reach > best.1 && Knot::has_kink(between) {
+                    best = (Some(i), reach);
+                }
+            }
+        }
+        best.0
+    }
+
     /// Adds a sample inside an interval, which tells how much its interpolants err.
     pub(super) fn split(&mut self, interval: usize, sample: Sample) {
         let (left, right) = (&self.samples[interval], &self.samples[interval + 1]);

@@ -11,6 +11,26 @@ pub(crate) struct Knot {
     pub(crate) slope: f64,
 }
 
+/// Share of the way from one point to another that the mean of their slopes misses at a kink.
+const KINK: f64 = 0.25;
+
+impl Knot {
+    /// How high a curve between two points is at most if it keeps the slope with which it leaves either.
+    pub(super) fn persisting([left, right]: [Self; 2]) -> f64 {
+        let width = right.at - left.at;
+        let (up, down) = (left.slope.max(0.0), right.slope.min(0.0));
+        (left.height + width * up).max(right.height - width * down)
+    }
+
+    /// Whether the mean of the slopes of two points does not lead from one to the other: the curve between them
+    /// is far from a parabola.
+    pub(super) fn has_kink([left, right]: [Self; 2]) -> bool {
+        let rise = right.height - left.height;
+        let expected = 0.5 * (right.at - left.at) * (left.slope + right.slope);
+        (rise - expected).abs() > KINK * rise.abs()
+    }
+}
+
 /// Heights below this share of the reference count as much.
 const FLOOR: f64 = 1e-9;
 /// Places at which an interpolant is looked at.

@@ -4,6 +4,7 @@ mod envelope;
 mod first_look;
 mod global_peak;
 mod interpolant;
+mod kinks;
 mod overlay;
 mod samples;
 mod search;

@@ -89,6 +89,8 @@ pub(super) struct Search<'a, 'b> {
     failures: usize,
     /// How the last of them ended.
     failure: Option<PointStatus>,
+    /// Where slip begins at a point that is too low to be the highest [rad/s].
+    pub(super) lower_onsets: Vec<f64>,
     /// Where one of several contacts begins to slip, as far as that has been looked at [rad/s].
     pub(super) changes: Vec<f64>,
     /// Intervals between slipping points in which sticking has been looked for [rad/s].
@@ -118,6 +120,7 @@ impl<'a, 'b> Search<'a, 'b> {
             envelope,
             failures: 0,
             failure: None,
+            lower_onsets: Vec::new(),
             changes: Vec::new(),
             windows: Vec::new(),
         }
@@ -154,7 +157,7 @@ impl<'a, 'b> Search<'a, 'b> {
             let next = self.envelope.most_promising(self.aim.precision.gain);
             let Some((interval, share)) = next.filter(|_| splits < self.aim.most_points) else {
                 let seen = self.look_between_slips()? || self.look_at_onsets()?;
-                if seen || self.look_at_changes(look.narrowest())? {
+                if seen || self.look_at_changes(look.narrowest())? || self.look_at_kinks()? {
                     continue;
                 }
                 break;

@@ -71,6 +71,10 @@ impl Search<'_, '_> {
             .collect();
         let mut found = false;
         for [mut stuck, mut slipping] in intervals {
+            let between = stuck.min(slipping)..=stuck.max(slipping);
+            if self.lower_onsets.iter().any(|at| between.contains(at)) {
+                continue;
+            }
             let mut part = slipping - stuck;
             if part.abs() <= SHORT * stuck || !self.balance.sticks(stuck + ONSET * part)? {
                 continue;
@@ -81,11 +85,17 @@ impl Search<'_, '_> {
                 *(if self.balance.sticks(middle)? { &mut stuck } else { &mut slipping }) = middle;
                 part = slipping - stuck;
             }
-            let Some(sample) = self.solve(stuck, None)? else { continue };
-            let rivals = (0..self.aim.groups.len()).any(|group| {
-                self.envelope.height_of(&sample, group) > ONSET_RIVAL * self.envelope.height(group)
-            });
-            if rivals {
+            let sample = self.solve(stuck, None)?;
+            let rivals = |sample: &Sample| {
+                (0..self.aim.groups.len()).any(|group| {
+                    let height = self.envelope.height(group);
+                    self.envelope.height_of(sample, group) > ONSET_RIVAL * height
+                })
+            };
+            if sample.as_ref().is_none_or(|one| !rivals(one)) {
+                // The highest point only grows: it will be none.
+                self.lower_onsets.push(0.5 * (stuck + slipping));
+            } else if let Some(sample) = sample {
                 let before = self.envelope.samples.len();
                 self.envelope.insert(sample);
                 found |= self.envelope.samples.len() > before;
