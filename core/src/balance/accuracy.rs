@@ -80,7 +80,7 @@ pub(super) struct Extension {
     pub(super) highest: usize,
     pub(super) steps: Steps,
     /// What its changes count, so that they stand for those of harmonics that it cannot afford as well.
-    unseen: f64,
+    pub(super) unseen: f64,
     pub(super) account: Account,
 }
 

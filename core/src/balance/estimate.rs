@@ -163,13 +163,19 @@ impl ForcedBalance<'_> {
             point.error_estimate = vec![f64::NAN; observe.len()];
             return Ok(None);
         };
-        // DOFs without mass move with kinks: harmonics fall with the square of their order, and the error
-        // with the first power of H, so that the extended balance has a known share of it.
-        if !self.model.structure().massless().is_empty() {
-            let unseen = order as f64 / (order - solution.harmonics.highest()) as f64;
-            found.errors.iter_mut().chain(&mut found.first).for_each(|error| *error *= unseen);
-        }
+        let unseen = self.unseen_of_massless(&solution.harmonics, &extension);
+        found.errors.iter_mut().chain(&mut found.first).for_each(|error| *error *= unseen);
         Ok(Some(found))
+    }
+
+    /// What the changes by an extended balance count. DOFs without mass move with kinks: harmonics fall with the
+    /// square of their order, and the error with the first power of H, so that it has a known share of it.
+    pub(super) fn unseen_of_massless(&self, kept: &Harmonics, extension: &Extension) -> f64 {
+        if self.model.structure().massless().is_empty() {
+            return 1.0;
+        }
+        let order = extension.highest;
+        order as f64 / (order - kept.highest()) as f64
     }
 }
 

@@ -20,7 +20,7 @@ use faer::c64;
 const FINER: [usize; 2] = [4, 2];
 /// The step to the finer march times this is the whole error if that is of first order, and a
 /// little more than it if it is of second order.
-const CAUTION: f64 = 4.0 / 3.0;
+pub(super) const CAUTION: f64 = 4.0 / 3.0;
 
 /// Samples of the march that one through `samples` is compared with.
 pub(super) fn finer_than(samples: usize) -> usize {

@@ -1,6 +1,7 @@
 //! What an error of a DOF counts against.
 
 use super::solution::Point;
+use crate::solve::largest;
 use faer::c64;
 
 /// A DOF's truncation error counts relative to its amplitude, but not to less than this share of the
@@ -57,15 +58,12 @@ impl Scale {
         let known = self.largest.iter().enumerate().chain(sizes.iter().enumerate());
         let counted = known.filter(|(dof, _)| self.counts(*dof));
         let overall = counted.map(|(_, size)| *size).fold(0.0, f64::max);
-        let mut worst = 0.0_f64;
         let counted = errors.zip(&sizes).enumerate().filter(|(dof, _)| self.counts(*dof));
-        for (dof, (error, size)) in counted {
+        let relative = |(dof, (error, size)): (usize, (f64, &f64))| {
             let own = self.largest.get(dof).copied().unwrap_or(0.0);
-            let reference = size.max(floor * own).max(NOISE * overall).max(f64::MIN_POSITIVE);
-            let relative = error / reference;
-            worst = if relative.is_nan() { f64::INFINITY } else { worst.max(relative) };
-        }
-        worst
+            error / size.max(floor * own).max(NOISE * overall).max(f64::MIN_POSITIVE)
+        };
+        largest(counted.map(relative))
     }
 
     /// Largest of the relative errors of a straight line between the last two of three points along a

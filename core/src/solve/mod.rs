@@ -87,6 +87,11 @@ pub trait System {
     fn solve(&mut self, rhs: &[f64], step: &mut [f64]) -> bool;
 }
 
+/// Largest of some errors, at least 0; infinite if one is not a number.
+pub(crate) fn largest(errors: impl Iterator<Item = f64>) -> f64 {
+    errors.fold(0.0, |worst, one| if one.is_nan() { f64::INFINITY } else { worst.max(one) })
+}
+
 /// Euclidean norm, without under- or overflow of the squares.
 #[must_use]
 pub fn norm(x: &[f64]) -> f64 {
@@ -135,4 +140,16 @@ pub(super) fn differences<S: System + ?Sized>(
     }
     // What `relative_size` reads from the last evaluation belongs to `x` again.
     system.value(x, residual);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::largest;
+
+    #[test]
+    fn an_error_that_is_no_number_is_not_below_any_tolerance() {
+        assert_eq!(largest([0.1, 0.3, 0.2].into_iter()), 0.3);
+        assert_eq!(largest([0.1, f64::NAN, 0.2].into_iter()), f64::INFINITY);
+        assert_eq!(largest([].into_iter()), 0.0);
+    }
 }

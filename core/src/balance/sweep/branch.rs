@@ -310,21 +310,34 @@ impl Walk<'_, '_> {
         resolution: Resolution,
         iterations: usize,
     ) -> Result<Option<Point>, Error> {
-        let unknowns = curve.series(z);
+        let Some(mut point) = self.recovered(curve, z, resolution, iterations)? else {
+            return Ok(None);
+        };
         let u = &z[..z.len() - 1];
-        let Some((equations, residual)) = curve.equations(z) else { return Ok(None) };
-        let mut point = equations.recover(u, self.balance.observe, PointStatus::Converged)?;
-        point.samples = resolution.samples;
+        let Some((equations, _)) = curve.equations(z) else { return Ok(None) };
         let ended = !self.balance.observe.is_empty()
             && !self.balance.estimate(equations, u, &mut point, true)?;
         // What a search was to find that was ended is not where it was found.
-        if ended || self.balance.is_ended() {
-            return Ok(None);
-        }
-        point.residual = residual;
-        point.iterations = iterations;
-        point.unknowns = Some(unknowns);
-        Ok(Some(point))
+        Ok((!ended && !self.balance.is_ended()).then_some(point))
+    }
+
+    /// Displacements and forces of a point of the curve; nothing where its equations are not defined.
+    pub(super) fn recovered(
+        &self,
+        curve: &mut ForcedCurve<'_>,
+        z: &[f64],
+        resolution: Resolution,
+        iterations: usize,
+    ) -> Result<Option<Point>, Error> {
+        let unknowns = Some(curve.series(z));
+        let Some((equations, residual)) = curve.equations(z) else { return Ok(None) };
+        let u = &z[..z.len() - 1];
+        let point = equations.recover(u, self.balance.observe, PointStatus::Converged)?;
+        let none = vec![0.0; self.balance.observe.len()];
+        let (error_estimate, sampling_error) = (none.clone(), none);
+        let samples = resolution.samples;
+        let known = Point { samples, residual, iterations, unknowns, ..point };
+        Ok(Some(Point { error_estimate, sampling_error, ..known }))
     }
 
     /// Largest relative distance of the observed DOFs from a straight line between the last point and

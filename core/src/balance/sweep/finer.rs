@@ -25,7 +25,7 @@ impl Walk<'_, '_> {
     }
 
     /// The resolution that a point lacks, if any.
-    fn wanted(&mut self, point: &mut Point, at: Resolution) -> Option<Resolution> {
+    pub(super) fn wanted(&mut self, point: &mut Point, at: Resolution) -> Option<Resolution> {
         if self.balance.control.is_fixed() {
             return None;
         }

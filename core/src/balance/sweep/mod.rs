@@ -6,6 +6,7 @@ mod branches;
 mod continuity;
 mod course;
 mod finer;
+mod fold;
 mod forced_curve;
 mod further;
 mod given;

@@ -5,7 +5,7 @@ use super::forced_curve::ForcedCurve;
 use crate::balance::settings::Resolution;
 use crate::balance::solution::Point;
 use crate::balance::tangent::distance;
-use crate::solve::{between, Branch};
+use crate::solve::between;
 use crate::Error;
 use std::sync::Arc;
 
@@ -44,15 +44,13 @@ impl Walk<'_, '_> {
             return Ok(());
         }
         let (before, last) = (Arc::clone(before), Arc::clone(last));
-        let points: Option<Vec<Vec<f64>>> = [&*before, &*last, new]
-            .into_iter()
-            .map(|point| Some(curve.point(point.unknowns()?, point.omega)))
-            .collect();
-        let Some([a, b, c]) = points.as_deref() else { return Ok(()) };
-        let Some(z) = Branch::turn(curve, a, b, c) else { return Ok(()) };
-        let Some(mut fold) = self.solved(curve, &z, resolution, 0)? else { return Ok(()) };
-        fold.fold = true;
-        let (same, before) = (distance(&z, b) < SAME, distance(&z, a) < distance(b, a));
+        let Some(fold) = self.fold(curve, resolution, [&before, &last, new])? else {
+            return Ok(());
+        };
+        let places =
+            [&before, &last, &fold].map(|one| Some(curve.point(one.unknowns()?, one.omega)));
+        let [Some(a), Some(b), Some(z)] = places else { return Ok(()) };
+        let (same, before) = (distance(&z, &b) < SAME, distance(&z, &a) < distance(&b, &a));
         if same || before {
             self.points.pop();
         }

@@ -327,10 +327,11 @@ impl<'a> Walk<'a> {
         if let Some(step) = step {
             point.errors = step.relative();
             point.response.error_estimate = self.truncation.changes(&point, step);
-            let missed = step.error() > self.settings.tolerance;
-            if missed && self.settings.harmonics == HarmonicChoice::Auto {
-                point.response.status = PointStatus::HarmonicsLimit;
-            }
+        }
+        // An error that is not known is not below the tolerance.
+        let enough = step.is_some_and(|step| step.error() <= self.settings.tolerance);
+        if !enough && self.settings.harmonics == HarmonicChoice::Auto {
+            point.response.status = PointStatus::HarmonicsLimit;
         }
         self.profile.recovery += start.elapsed();
         self.points.push(point);

@@ -5,7 +5,7 @@ use super::point::ModePoint;
 use super::settings::ModeSettings;
 use crate::balance::HarmonicChoice;
 use crate::fourier::{Harmonics, SampleTable};
-use crate::solve::{at_parameter, norm, Curve as _};
+use crate::solve::{at_parameter, largest, norm, Curve as _};
 use crate::timing::Profile;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -56,10 +56,11 @@ impl Step {
         [omega, damping + omega]
     }
 
-    /// Largest relative change of frequency, damping and shape.
+    /// Largest relative change of frequency, damping and shape; infinite if one is not a number.
     pub(super) fn error(&self) -> f64 {
         let [omega, damping] = self.relative();
-        norm(&self.step[..self.z.len() - 3]).max(omega).max(damping)
+        let changes = [norm(&self.step[..self.z.len() - 3]), omega, damping];
+        largest(changes.into_iter())
     }
 }
 

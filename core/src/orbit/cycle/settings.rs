@@ -3,7 +3,7 @@
 
 use crate::balance::{HarmonicChoice, Point, HIGHEST_ORDER};
 use crate::motion::Event;
-use crate::solve::End;
+use crate::solve::{largest, End};
 use crate::timing::Profile;
 use crate::Error;
 use faer::c64;
@@ -176,7 +176,8 @@ pub struct LimitCycles {
     pub profile: Profile,
 }
 
-/// Largest error of a DOF against its amplitude; a DOF that hardly moves against the others.
+/// Largest error of a DOF against its amplitude, of one that hardly moves against the others; infinite if one
+/// is not a number.
 pub(super) fn relative(point: &Point) -> f64 {
     let orders = point.harmonics + 1;
     let sizes: Vec<f64> = point
@@ -184,9 +185,9 @@ pub(super) fn relative(point: &Point) -> f64 {
         .chunks_exact(orders)
         .map(|row| row.iter().map(|x| x.norm_sqr()).sum::<f64>().sqrt())
         .collect();
-    let largest = sizes.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+    let highest = sizes.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
     let errors = point.error_estimate.iter().zip(&sizes);
-    errors.map(|(error, size)| error / size.max(0.02 * largest)).fold(0.0, f64::max)
+    largest(errors.map(|(error, size)| error / size.max(0.02 * highest)))
 }
 
 /// What happens where stability changes. The numbers are those that results keep.
