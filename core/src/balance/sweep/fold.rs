@@ -56,7 +56,8 @@ impl Walk<'_, '_> {
             };
             fold = finer;
         }
-        Ok(Some(fold))
+        // What was ended on the way is not what it would have come to.
+        Ok((!self.balance.is_ended()).then_some(fold))
     }
 
     /// The fold of the curve of another resolution near three points.
