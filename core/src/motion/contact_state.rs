@@ -47,3 +47,12 @@ impl ContactState {
         self.slip_rate.get_mut(place.clone(), place).copy_from(slip_rate);
     }
 }
+
+/// The contacts of a regime as disturbances see them: the same whichever way the others slip.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Springs {
+    /// Rates of the strains per velocity: strain, point, factor.
+    pub(super) moves: Vec<(usize, usize, f64)>,
+    /// Stiffness of points that press.
+    pub(super) pressing: Vec<(usize, f64)>,
+}

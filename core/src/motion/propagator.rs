@@ -3,11 +3,11 @@
 //! Strains follow the displacements, `g = r + R η` with a constant r, so that they need no equations of their
 //! own: `η'' + C η' + (Ω² + G R) η = −G r`.
 
+use super::contact_state::Springs;
 use super::damping::Damping;
 use super::exponential::{exponential, Driven};
 use super::oscillator::Oscillator;
 use super::quadrature::Quadrature;
-use super::regime_rates::Springs;
 use crate::solve::dot;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par};

@@ -1,7 +1,7 @@
 //! The equations of disturbances in one regime, `y' = A y` in the coordinates of [`Transition`], and power series of
 //! their solutions: products of A with a vector are those of modes and contacts.
 
-use super::contact_state::ContactState;
+use super::contact_state::{ContactState, Springs};
 use super::damping::Damping;
 use super::modal_system::ModalSystem;
 use super::projection::Projection;
@@ -14,15 +14,6 @@ const ROUNDING: f64 = 1e-18;
 const TERMS: usize = 60;
 /// Most length of a series, in units of the fastest rate.
 const LENGTH: f64 = 8.0;
-
-/// The contacts of a regime as disturbances see them: the same whichever way the others slip.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Springs {
-    /// Rates of the strains per velocity: strain, point, factor.
-    pub(super) moves: Vec<(usize, usize, f64)>,
-    /// Stiffness of points that press.
-    pub(super) pressing: Vec<(usize, f64)>,
-}
 
 /// The equations of a regime in the coordinates of disturbances.
 pub(super) struct Rates<'a> {

@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -33,12 +33,16 @@ from stickslip.fe.vtu import write_vtu
 from stickslip.results.arrays import Measure, amplitude_of
 from stickslip.results.forced_response import ForcedResponse
 
-if TYPE_CHECKING:
-    from stickslip.fe.interface import ContactInterface
-
 Part: TypeAlias = str | NDArray[np.bool_]
 """A surface or a set of nodes by its name, or which nodes of the mesh it has."""
 _NAME = re.compile(r"(\d{1,18})\.([1-6])")
+
+
+class Relative(Protocol):
+    """What leads back from displacements between bodies, as a contact interface does."""
+
+    def absolute(self, values: ArrayLike, dofs: Iterable[str]) -> NDArray[Any]:
+        """Return the displacements of the bodies."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -243,7 +247,7 @@ class Mesh:
         reduction: Reduction,
         count: int = 6,
         springs: Mapping[str, float] | None = None,
-        relative: ContactInterface | None = None,
+        relative: Relative | None = None,
     ) -> dict[str, NDArray[np.float64]]:
         """Return the natural modes of a reduced structure as fields, for `write_vtu`.
 
@@ -268,7 +272,7 @@ class Mesh:
         index: int,
         reduction: Reduction | None = None,
         measure: Measure = "half_range",
-        relative: ContactInterface | None = None,
+        relative: Relative | None = None,
     ) -> dict[str, NDArray[np.float64]]:
         """Return a point of a response as fields, for `write_vtu`.
 

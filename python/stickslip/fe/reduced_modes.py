@@ -3,24 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.checks import unknown
+from stickslip.checks import Matrix, unknown
 from stickslip.errors import ModelError
 from stickslip.units import physical_number
-
-if TYPE_CHECKING:
-    from stickslip.fe.reduction import Reduction
 
 _MASSLESS = 1e-12
 """Inertia below this part of the largest is none."""
 
 
+class Reduced(Protocol):
+    """Matrices of the boundary and of fixed-interface modes, and what they are of."""
+
+    mass: Matrix
+    stiffness: Matrix
+    boundary: tuple[str, ...]
+    omega: NDArray[np.float64]
+
+
 def natural_modes(
-    reduction: Reduction, springs: Mapping[str, float] | None = None
+    reduction: Reduced, springs: Mapping[str, float] | None = None
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return squared angular frequencies and shapes, (n, modes), of a reduction, ascending.
 
@@ -45,13 +51,13 @@ def natural_modes(
     return shift + 1.0 / inverses[inert], shapes[:, inert] / np.sqrt(inverses[inert])
 
 
-def shift_below(reduction: Reduction) -> float:
+def shift_below(reduction: Reduced) -> float:
     """Return a number below all eigenvalues: a free structure, too, can be factored there."""
     return -0.1 * float(reduction.omega[0]) ** 2
 
 
 def springs_of(
-    reduction: Reduction, springs: Mapping[str, float] | None
+    reduction: Reduced, springs: Mapping[str, float] | None
 ) -> Iterator[tuple[int, float]]:
     """Give the place in the boundary and the stiffness [N/m] of springs to ground."""
     for dof, value in (springs or {}).items():
