@@ -104,25 +104,32 @@ def against_a_blade() -> None:
         print(f"| H = {harmonics} | {taken['disk'] / taken['blade']:.2f} |")
 
 
-def by_blades() -> None:
+def by_blades(coupling: float) -> None:
     """Print how the time of a point grows with the number of blades."""
     omega = np.linspace(*OMEGA, 56)
     counts, kept = (12, 36, 108), (3, 9)
-    disks = {blades: mistuned(blades) for blades in counts}
-    print("\n| blades | H = 3, per point [ms] | H = 9, per point [ms] |\n|---|---|---|")
+    disks = {blades: mistuned(blades, coupling) for blades in counts}
+    print(f"\n{coupling:g} N/m between the tips, per point, H = 3 | H = 9:")
+    print("| blades | [ms] | iterations | contacts that slip | [ms] | iterations | that slip |")
+    print("|---|---|---|---|---|---|---|")
 
-    def sweep(blades: int, harmonics: int) -> Callable[[], object]:
+    def sweep(blades: int, harmonics: int) -> Callable[[], ss.ForcedResponse]:
         observe = dampers(blades)
         return lambda: ss.forced_response(disks[blades], omega, harmonics, observe=observe)
 
     works = {f"{n} {h}": sweep(n, h) for n in counts for h in kept}
     taken = fastest(works, rounds=4)
     for blades in counts:
-        each = [1e3 * taken[f"{blades} {h}"] / len(omega) for h in kept]
-        print(f"| {blades} | {each[0]:.2f} | {each[1]:.2f} |")
+        row = f"| {blades} |"
+        for h in kept:
+            found = works[f"{blades} {h}"]()
+            slip = (found.arrays.slip_fraction > 0.0).sum() / len(omega)
+            each = 1e3 * taken[f"{blades} {h}"] / len(omega)
+            row += f" {each:.2f} | {found.counters['iterations'] / len(omega):.1f} | {slip:.1f} |"
+        print(row)
     for h in kept:
-        growth = np.log(taken[f"108 {h}"] / taken[f"12 {h}"]) / np.log(9.0)
-        print(f"H = {h}: time grows as blades^{growth:.2f}")
+        growth = np.log(taken[f"108 {h}"] / taken[f"36 {h}"]) / np.log(3.0)
+        print(f"H = {h}: from 36 to 108 blades time grows as blades^{growth:.2f}")
 
 
 def automatic() -> None:
@@ -205,7 +212,8 @@ def main() -> None:
     options = parser.parse_args()
     against_lapack()
     against_a_blade()
-    by_blades()
+    by_blades(7e3)
+    by_blades(1e5)
     automatic()
     in_time()
     if options.peers:

@@ -130,7 +130,11 @@ impl<'a> Output<'a> {
                 self.truncate(&mut history.trace, kept);
                 return Ok(false);
             }
-            before.clone_from(state);
+            let reached = (index + 1) * self.settings.samples;
+            let sampled = sample <= self.settings.samples && sample * steps <= reached;
+            if sampled {
+                before.clone_from(state);
+            }
             scheme.advance(state, index);
             if !state.is_bounded() {
                 history.range.extend(range);
@@ -145,7 +149,6 @@ impl<'a> Output<'a> {
                 ];
                 widen_by_cubic(ends, range);
             }
-            let reached = (index + 1) * self.settings.samples;
             while sample <= self.settings.samples && sample * steps <= reached {
                 let share = (sample * steps) as f64 / self.settings.samples as f64 - index as f64;
                 let between = scheme.between(&before, state, share);

@@ -11,7 +11,9 @@ pub struct RungeKutta<'a> {
     step: f64,
     /// Modal load at the start and the middle of each step.
     loads: Vec<f64>,
+    /// Velocities and accelerations.
     stages: [Vec<f64>; 4],
+    /// Displacements at which forces are asked for.
     trial: Vec<f64>,
     reference: Vec<f64>,
     reached: Vec<f64>,
@@ -38,7 +40,7 @@ impl<'a> RungeKutta<'a> {
             step: std::f64::consts::TAU / omega / steps as f64,
             loads,
             stages: std::array::from_fn(|_| vec![0.0; 2 * modes]),
-            trial: vec![0.0; 2 * modes],
+            trial: vec![0.0; modes],
             reference: vec![0.0; points],
             reached: vec![0.0; points],
             force: vec![0.0; points],
@@ -62,10 +64,8 @@ impl<'a> RungeKutta<'a> {
     /// Gives a state the forces of laws that have them from the displacements.
     pub fn settle(&mut self, state: &mut State) {
         let modes = self.system.modes();
-        for (point, u) in self.reference.iter_mut().enumerate() {
-            *u = dot(self.system.contact_shape(point), &state.displacement);
-        }
-        self.trial[..modes].copy_from_slice(&state.displacement);
+        self.refer_to(&state.displacement);
+        self.trial.copy_from_slice(&state.displacement);
         self.forces(state);
         state.force.copy_from_slice(&self.force);
     }
@@ -74,31 +74,25 @@ impl<'a> RungeKutta<'a> {
     pub fn advance(&mut self, state: &mut State, index: usize) {
         let modes = self.system.modes();
         let h = self.step;
-        for (point, u) in self.reference.iter_mut().enumerate() {
-            *u = dot(self.system.contact_shape(point), &state.displacement);
-        }
-        for stage in 0..4 {
-            let (share, half_steps) = [(0.0, 0), (0.5, 1), (0.5, 1), (1.0, 2)][stage];
-            for j in 0..modes {
-                let (mut x, mut v) = (state.displacement[j], state.velocity[j]);
-                if stage > 0 {
-                    x += share * h * self.stages[stage - 1][j];
-                    v += share * h * self.stages[stage - 1][modes + j];
-                }
-                (self.trial[j], self.trial[modes + j]) = (x, v);
-            }
+        self.refer_to(&state.displacement);
+        self.trial.copy_from_slice(&state.displacement);
+        self.force.copy_from_slice(&state.force);
+        self.stages[0][..modes].copy_from_slice(&state.velocity);
+        self.accelerations(0, 2 * index);
+        for (stage, share, half_steps) in [(1, 0.5, 1), (2, 0.5, 1), (3, 1.0, 2)] {
+            let (done, next) = self.stages.split_at_mut(stage);
+            let (velocity, acceleration) = done[stage - 1].split_at(modes);
+            step(&mut self.trial, &state.displacement, share * h, velocity);
+            step(&mut next[0][..modes], &state.velocity, share * h, acceleration);
             self.forces(state);
-            self.rates(stage, (2 * index + half_steps) % (2 * self.steps));
+            let at = 2 * index + half_steps;
+            self.accelerations(stage, if at < 2 * self.steps { at } else { 0 });
         }
-        for j in 0..modes {
-            let sum = |i: usize| {
-                let [a, b, c, d] = &self.stages;
-                h / 6.0 * (a[i] + 2.0 * (b[i] + c[i]) + d[i])
-            };
-            state.displacement[j] += sum(j);
-            state.velocity[j] += sum(modes + j);
-        }
-        self.trial[..modes].copy_from_slice(&state.displacement);
+        let [a, b, c, d] = &self.stages;
+        let rates = a.iter().zip(b).zip(c).zip(d).map(|(((a, b), c), d)| a + 2.0 * (b + c) + d);
+        let moved = state.displacement.iter_mut().chain(&mut state.velocity);
+        moved.zip(rates).for_each(|(to, rate)| *to += h / 6.0 * rate);
+        self.trial.copy_from_slice(&state.displacement);
         self.forces(state);
         self.keep(state);
         self.taken += 1;
@@ -119,13 +113,18 @@ impl<'a> RungeKutta<'a> {
             state.velocity[j] = (v_0 + s * (2.0 * square + 3.0 * s * cube)) / h;
         }
         let modes = self.system.modes();
-        self.trial[..modes].copy_from_slice(&state.displacement);
-        for (point, u) in self.reference.iter_mut().enumerate() {
-            *u = dot(self.system.contact_shape(point), &before.displacement);
-        }
+        self.trial.copy_from_slice(&state.displacement);
+        self.refer_to(&before.displacement);
         self.forces(before);
         self.keep(&mut state);
         state
+    }
+
+    /// Keeps the displacements of the contacts from which forces change.
+    fn refer_to(&mut self, displacement: &[f64]) {
+        for (point, u) in self.reference.iter_mut().enumerate() {
+            *u = dot(self.system.contact_shape(point), displacement);
+        }
     }
 
     /// Takes the contact forces at the trial displacements over, with what the laws remember.
@@ -140,7 +139,7 @@ impl<'a> RungeKutta<'a> {
         self.force.copy_from_slice(&state.force);
         self.memory.clone_from(&state.memory);
         for (point, u) in self.reached.iter_mut().enumerate() {
-            *u = dot(self.system.contact_shape(point), &self.trial[..modes]);
+            *u = dot(self.system.contact_shape(point), &self.trial);
         }
         for body in self.system.bodies() {
             let points = body.points.clone();
@@ -153,20 +152,27 @@ impl<'a> RungeKutta<'a> {
         }
     }
 
-    /// Time derivatives at the trial state.
-    fn rates(&mut self, stage: usize, half_step: usize) {
+    /// Accelerations at the trial displacements and the velocities of a stage.
+    fn accelerations(&mut self, stage: usize, half_step: usize) {
         let modes = self.system.modes();
-        let (rate_x, rate_v) = self.stages[stage].split_at_mut(modes);
-        rate_x.copy_from_slice(&self.trial[modes..]);
-        rate_v.copy_from_slice(&self.loads[half_step * modes..(half_step + 1) * modes]);
-        self.system.add_damping(&self.trial[modes..], -1.0, rate_v);
-        for ((rate, w), x) in rate_v.iter_mut().zip(self.system.omega_squared()).zip(&self.trial) {
-            *rate -= w * x;
+        let (velocity, rates) = self.stages[stage].split_at_mut(modes);
+        let load = &self.loads[half_step * modes..(half_step + 1) * modes];
+        let elastic = self.system.omega_squared().iter().zip(&self.trial);
+        for ((rate, load), (w, x)) in rates.iter_mut().zip(load).zip(elastic) {
+            *rate = load - w * x;
         }
+        self.system.add_damping(velocity, -1.0, rates);
         for (point, f) in self.force.iter().enumerate() {
-            for (rate, b) in rate_v.iter_mut().zip(self.system.contact_shape(point)) {
+            for (rate, b) in rates.iter_mut().zip(self.system.contact_shape(point)) {
                 *rate -= b * f;
             }
         }
+    }
+}
+
+/// Where a rate leads from some values over a length.
+fn step(to: &mut [f64], from: &[f64], length: f64, rate: &[f64]) {
+    for ((to, from), rate) in to.iter_mut().zip(from).zip(rate) {
+        *to = from + length * rate;
     }
 }
