@@ -63,7 +63,6 @@ impl<'a> RungeKutta<'a> {
 
     /// Gives a state the forces of laws that have them from the displacements.
     pub fn settle(&mut self, state: &mut State) {
-        let modes = self.system.modes();
         self.refer_to(&state.displacement);
         self.trial.copy_from_slice(&state.displacement);
         self.forces(state);
@@ -112,7 +111,6 @@ impl<'a> RungeKutta<'a> {
             state.displacement[j] = x_0 + s * (v_0 + s * (square + s * cube));
             state.velocity[j] = (v_0 + s * (2.0 * square + 3.0 * s * cube)) / h;
         }
-        let modes = self.system.modes();
         self.trial.copy_from_slice(&state.displacement);
         self.refer_to(&before.displacement);
         self.forces(before);
@@ -135,7 +133,6 @@ impl<'a> RungeKutta<'a> {
 
     /// Contact forces at the trial displacements, from those at the start of the step.
     fn forces(&mut self, state: &State) {
-        let modes = self.system.modes();
         self.force.copy_from_slice(&state.force);
         self.memory.clone_from(&state.memory);
         for (point, u) in self.reached.iter_mut().enumerate() {
