@@ -48,6 +48,23 @@ def test_wedge_that_locks():
     assert least == pytest.approx(120.0 / (np.cos(a) + 1.2 * np.sin(a)), rel=1e-9)
 
 
+@pytest.mark.parametrize("friction", [0.0, 1e-9])
+def test_a_wall_without_friction_does_not_pull(friction):
+    """A body on a rough floor at a smooth wall: the floor bears least as the wall is left."""
+    structure = ss.Structure(np.eye(2), [[1e4, -4e3], [-4e3, 1e4]], np.zeros((2, 2)), ["x", "y"])
+    springs = {"tangential_stiffness": 2e4, "normal_stiffness": 3e4}
+    floor = ss.Coulomb(["x", "y"], normal=[0, 1], friction=0.8, name="floor", **springs)
+    wall = ss.Coulomb(["y", "x"], normal=[0, 1], friction=friction, name="wall", **springs)
+    loads = [ss.Force("x", 30.0, harmonic=0), ss.Force("y", 100.0, harmonic=0)]
+    at_rest = ss.static_response(ss.Model(structure, [floor, wall], loads))
+    for alone in (False, True):
+        # There x = 0, and y is that of the spring and the floor under 100 N.
+        least, greatest = at_rest.normal_force_range("floor", alone=alone)
+        assert least == pytest.approx(100.0 * 3e4 / (1e4 + 3e4), rel=1e-7)
+        assert greatest > at_rest.contact_force("floor")[1] > least
+        assert at_rest.normal_force_range("wall", alone=alone)[0] == pytest.approx(0.0, abs=1e-7)
+
+
 def test_range_in_space_agrees_with_the_plane():
     """A node between two springs, pushed in a direction of the plane that is no axis."""
     for turn in (0.0, 0.3, 1.1):

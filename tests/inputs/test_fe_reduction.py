@@ -38,6 +38,20 @@ def test_all_modes_kept_is_the_full_structure():
     assert (own[:19] >= full[:19] * (1.0 - 1e-12)).all()  # Rayleigh-Ritz: never below
 
 
+def test_every_mode_below_a_high_frequency_is_kept():
+    M, K = (matrix.toarray() for matrix in chain(20))
+    reduced = ss.craig_bampton(M, K, [19, 4], omega=1e9)
+    full = scipy.linalg.eigh(K, M, eigvals_only=True)
+    own = scipy.linalg.eigh(reduced.stiffness, reduced.mass, eigvals_only=True)
+    np.testing.assert_allclose(own, full, rtol=1e-10)  # no mode is missing: nothing is lost
+    assert ss.craig_bampton(M, K, [19, 4], modes=18).omega.size == 18
+    # Two rows share an inertia: their difference has none, and no mode.
+    M[:2, :2] = 1.0
+    assert ss.craig_bampton(M, K, [19, 4], omega=1e9).omega.size == 17
+    with pytest.raises(ModelError, match="modes: 18 is too large; give at most 17"):
+        ss.craig_bampton(M, K, [19, 4], modes=18)
+
+
 @pytest.mark.parametrize("size", [50, 900])  # dense modes, and Lanczos' method
 def test_constraint_modes_keep_static_flexibility_exactly(size):
     M, K = chain(size)

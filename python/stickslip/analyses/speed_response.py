@@ -31,7 +31,9 @@ def speed_response(
     """Response along the speed of rotation, which changes the model itself.
 
     At a speed W the forces have the frequency of their engine order, E W; `build` makes the model
-    there, with the centrifugal loads of dampers and the stiffness of the turning blades.
+    there, with the centrifugal loads of dampers and the stiffness of the turning blades. Each speed
+    is solved by itself: where several motions exist the answer is one of them, and may be another at
+    the next speed. `forced_response` follows them over the frequency.
 
     Parameters
     ----------

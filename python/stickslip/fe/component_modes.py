@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,9 +17,12 @@ from stickslip.checks import (
 )
 from stickslip.errors import ModelError
 from stickslip.fe.reduction import Reduction, panels
-from stickslip.fe.sparse import Factor, lowest_modes, symmetric_sparse
+from stickslip.fe.sparse import DENSE, Factor, lowest_modes, symmetric_sparse
 from stickslip.model.matrix_units import MatrixUnits, Units
 from stickslip.units import physical_number
+
+if TYPE_CHECKING:
+    from scipy.sparse import csc_array
 
 Dof: TypeAlias = int | str
 _FIRST = 20
@@ -105,7 +108,7 @@ def craig_bampton(
     K_ii, M_ii = K[inner][:, inner].tocsc(), M[inner][:, inner].tocsc()
     inertia = M_ii.diagonal()
     moving = inertia > max(_MASSLESS * inertia.max(), 0.0)
-    most = min(max(inner.size - 1, 1), int(moving.sum()))
+    most = _most_modes(M_ii, moving)
     count = _mode_count(modes, omega, most)
     try:
         factor = Factor(K_ii)
@@ -184,6 +187,17 @@ def _own_name(dof: Dof, rows: tuple[str, ...] | None) -> str:
         return dof
     row = whole_number(dof, "boundary")
     return rows[row] if rows is not None and row < len(rows) else str(row)
+
+
+def _most_modes(mass: csc_array, moving: NDArray[np.bool_]) -> int:
+    """Return how many modes are found at most; Lanczos' method does not find the last one."""
+    size, count = mass.shape[0], int(moving.sum())
+    if size > DENSE or not count:
+        return min(size - 1, count)
+    # Rows with inertia may have combinations without any. Each counts in units of its own.
+    inertia = mass[moving][:, moving].toarray()
+    scale = 1.0 / np.sqrt(inertia.diagonal())
+    return int(np.linalg.matrix_rank(scale[:, None] * inertia * scale, hermitian=True))
 
 
 def _mode_count(modes: int | None, omega: float | None, most: int) -> int:

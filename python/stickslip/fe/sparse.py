@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from stickslip import _core
 
 _ASYMMETRY = 1e-8
-_DENSE = 400
+DENSE = 400
 """Rows up to which a dense eigenproblem is faster and surer than Lanczos' method."""
 
 _Made = TypeVar("_Made")
@@ -110,7 +110,7 @@ def lowest_modes(
     from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh
 
     size = stiffness.shape[0]
-    if size <= _DENSE:
+    if size <= DENSE:
         # 1 / (lambda - shift): the stiffness has an inverse, the mass of massless dofs has none.
         shifted = (stiffness - shift * mass).toarray()
         inverses, modes = eigh(mass.toarray(), shifted, subset_by_index=(size - count, size - 1))

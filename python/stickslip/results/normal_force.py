@@ -99,14 +99,16 @@ def _extreme(nodes: list[_Node], force: Float, change: Float, weights: Float) ->
 
     scale = float(np.abs(force).max())
     cuts = [cut for node in nodes for cut in _first_cuts(node)]
+    # A closed node does not pull. Cones say so too, but not those without friction.
+    normals = [node.normal for node in nodes if node.normal is not None]
     for _ in range(_MOST_CUTS):
         # Forces are force + scale * change @ x; x = 0 is the state at rest, which is allowed.
-        matrix = np.array([_along(change, *cut) for cut in cuts])
-        room = np.array([node.friction * node.load - _along(force, node, d) for node, d in cuts])
+        matrix = np.array([*(_along(change, *cut) for cut in cuts), *-change[normals]])
+        room = [node.friction * node.load - _along(force, node, d) for node, d in cuts]
         found = linprog(
             weights @ change,
             A_ub=matrix,
-            b_ub=room / scale,
+            b_ub=np.r_[room, force[normals]] / scale,
             bounds=(None, None),
             method="highs-ds",
             options={"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10},
