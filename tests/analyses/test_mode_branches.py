@@ -163,3 +163,44 @@ def test_automatic_harmonics_pass_the_windings_of_a_branch(diameter):
     assert "mode-not-reached" not in {one.code for one in mode.diagnostics}
     assert np.isfinite(mode.omega).all()
     assert mode.arrays.residual.max() < 1e-6
+
+
+@pytest.mark.parametrize("masses", [1, 2])
+@pytest.mark.parametrize("damping", [-0.2, -1.0, -1.9, -2.0, -2.1])
+def test_a_branch_passes_the_zeros_of_its_damping(masses, damping):
+    """Friction takes what a negative damping feeds at two amplitudes: those of the limit cycles."""
+    if masses == 1:
+        own, fed = one_mass(JENKINS, damping=damping), np.array([[damping]])
+    else:
+        fed = damping * np.eye(2)
+        stiffness = np.array([[2e4, -1e4], [-1e4, 2e4]])
+        body = ss.Structure(np.eye(2), stiffness, fed, ["x", "y"])
+        own = ss.Model(body, [JENKINS])
+    span = (1e-5, 1.2e-2 * 2.0 / abs(damping))
+    branch = ss.nonlinear_modes(own, amplitude=span)
+    assert "mode-not-reached" not in {one.code for one in branch.diagnostics}
+    assert branch.amplitude[[0, -1]] == pytest.approx(span, rel=1e-9)
+    assert all(status == ss.Status.CONVERGED for status in branch.status)
+
+    structure = own.structure
+    bare = ss.Structure(structure.mass, structure.stiffness, 0.0 * fed, structure.dofs)
+    cycles = ss.limit_cycles(
+        ss.Model(bare, [JENKINS]), negative_damping=fed, ratio=[1.0], harmonics=31
+    )
+    known = np.sort(modal_amplitudes(cycles, structure))
+    at = np.flatnonzero(np.diff(np.sign(branch.damping_ratio)))
+    share = branch.damping_ratio[at] / (branch.damping_ratio[at] - branch.damping_ratio[at + 1])
+    zeros = branch.amplitude[at] * (branch.amplitude[at + 1] / branch.amplitude[at]) ** share
+    assert zeros == pytest.approx(known, rel=2e-3)
+
+    # There the damping is zero, and known as well as anywhere.
+    listed = ss.nonlinear_modes(own, amplitude=known)
+    assert all(status == ss.Status.CONVERGED for status in listed.status)
+    rest = abs(branch.linear_damping_ratio)
+    np.testing.assert_allclose(listed.damping_ratio, 0.0, atol=1e-2 * rest)
+
+
+def modal_amplitudes(cycles, structure):
+    """Return (X_1^H M X_1)^(1/2) of limit cycles."""
+    first = np.array([cycles.coefficients(dof)[:, 1] for dof in structure.dofs])
+    return np.sqrt(np.einsum("in,ij,jn->n", first.conj(), structure.mass, first).real)

@@ -116,6 +116,13 @@ impl Continuation {
         self.step = self.step.min(longest);
     }
 
+    /// The same for a step that is taken again because its points are wanted closer to each other: a walk
+    /// that is short by that does not crawl.
+    pub(crate) fn shorten_step(&mut self, longest: f64) {
+        self.limit_step(longest);
+        self.short = 0;
+    }
+
     /// Takes one step.
     pub fn advance(&mut self, curve: &mut dyn Curve) -> Advance {
         let weights = curve.weights(&self.point);

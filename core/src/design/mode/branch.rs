@@ -21,8 +21,8 @@ use std::time::Instant;
 const LONGEST: [f64; 2] = [0.25, 0.6];
 /// Steps; the longest depends on what is wanted.
 const STEPS: Steps = Steps { first: 0.05, shortest: 1e-7, longest: 0.25, max_iterations: 20 };
-/// Change of the damping from point to point of such a branch, as a share of it, and the least damping,
-/// in units of 2ω, that counts.
+/// Change of the damping from point to point of such a branch, as a share of it or of that at rest, and
+/// the least damping, in units of 2ω, that counts.
 const SEEN: [f64; 2] = [0.04, 1e-4];
 /// Shortest step that the damping asks for: there is a corner.
 const CORNER: f64 = 1e-3;
@@ -88,9 +88,10 @@ impl<'a> Walk<'a> {
                 Error::value("mode", settings.mode as f64, remedy)
             })?;
         }
+        let excess = equations.feed.share(linear.damping / equations.unit, &linear.shape);
         Ok(Self {
             settings,
-            truncation: Truncation::new(equations, lowest),
+            truncation: Truncation::new(equations, excess.abs(), lowest),
             linear,
             points: Vec::new(),
             turns: Vec::new(),
@@ -181,7 +182,7 @@ impl<'a> Walk<'a> {
             let length = distance(&before.point, &walk.point);
             if whole && length > CORNER && !self.shows(&before.point, &walk.point) {
                 walk = before;
-                walk.limit_step((0.4 * length).max(STEPS.shortest));
+                walk.shorten_step((0.4 * length).max(STEPS.shortest));
                 self.equations().hold(&walk.point);
                 continue;
             }
@@ -310,11 +311,13 @@ impl<'a> Walk<'a> {
     }
 
     /// Whether two points of a branch that is wanted as a whole are close enough for what is read off
-    /// between them: damping rises steeply where contacts begin to slip.
+    /// between them: damping rises steeply where contacts begin to slip. Where contacts take what a
+    /// negative damping feeds, none is left, and no share of it tells what is close.
     fn shows(&self, z: &[f64], ahead: &[f64]) -> bool {
         let (low, _) = self.bounds();
-        let [before, after] = [z, ahead].map(|z| z[z.len() - 2].abs());
-        log(ahead) <= low || (after - before).abs() <= SEEN[0] * before.max(after).max(SEEN[1])
+        let [before, after] = [z, ahead].map(|z| z[z.len() - 2]);
+        let size = before.abs().max(after.abs()).max(self.truncation.damping_at_rest).max(SEEN[1]);
+        log(ahead) <= low || (after - before).abs() <= SEEN[0] * size
     }
 
     fn record(&mut self, z: &[f64], step: Option<&Step>) {

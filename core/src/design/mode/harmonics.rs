@@ -33,6 +33,9 @@ pub(super) struct Truncation<'a> {
     /// Whether harmonics have been given up, and those that were asked for after that: so many stay.
     eased: bool,
     lowest: usize,
+    /// What feeds the linear mode, without its sign: damping that vanishes because contacts take what the
+    /// structure gives is as accurate as its parts.
+    pub(super) damping_at_rest: f64,
     /// Highest harmonic that any point has had.
     pub(super) highest: usize,
     /// Work in harmonics that have been left.
@@ -44,21 +47,28 @@ pub(super) struct Truncation<'a> {
 pub(super) struct Step {
     z: Vec<f64>,
     step: Vec<f64>,
+    damping_at_rest: f64,
 }
 
 impl Step {
     /// Relative changes of frequency and damping.
     pub(super) fn relative(&self) -> [f64; 2] {
+        self.changes(0.0)
+    }
+
+    /// The same, of damping relative to no less than this.
+    fn changes(&self, least: f64) -> [f64; 2] {
         let (z, step, size) = (&self.z, &self.step, self.z.len());
         let omega = (step[size - 3] / z[size - 3]).abs();
         // ζ = ξ/(2ω), which may vanish; below a millionth it counts as none.
-        let damping = step[size - 2].abs() / z[size - 2].abs().max(1e-6);
+        let damping = step[size - 2].abs() / z[size - 2].abs().max(least).max(1e-6);
         [omega, damping + omega]
     }
 
-    /// Largest relative change of frequency, damping and shape; infinite if one is not a number.
+    /// Largest relative change of frequency, damping and shape, of damping relative to that at rest where
+    /// it is more; infinite if one is not a number.
     pub(super) fn error(&self) -> f64 {
-        let [omega, damping] = self.relative();
+        let [omega, damping] = self.changes(self.damping_at_rest);
         let changes = [norm(&self.step[..self.z.len() - 3]), omega, damping];
         largest(changes.into_iter())
     }
@@ -75,8 +85,9 @@ fn above(order: usize) -> usize {
 }
 
 impl<'a> Truncation<'a> {
-    /// The harmonics of these equations, and never fewer than `lowest`.
-    pub(super) fn new(equations: ModeEquations<'a>, lowest: usize) -> Self {
+    /// The harmonics of these equations, whose mode has so much damping at rest, and never fewer than
+    /// `lowest`.
+    pub(super) fn new(equations: ModeEquations<'a>, damping_at_rest: f64, lowest: usize) -> Self {
         let highest = equations.harmonics().highest();
         Self {
             equations,
@@ -84,6 +95,7 @@ impl<'a> Truncation<'a> {
             generous: 0,
             eased: false,
             lowest,
+            damping_at_rest,
             highest,
             profile: Profile::default(),
             estimate: Duration::ZERO,
@@ -165,7 +177,7 @@ impl<'a> Truncation<'a> {
         let found = equations.solve_bordered(&z, &border, &right, &weights);
         self.finer = Some(equations);
         self.estimate += start.elapsed();
-        found.map(|(step, _)| Step { z, step })
+        found.map(|(step, _)| Step { z, step, damping_at_rest: self.damping_at_rest })
     }
 
     /// Sum over all harmonics of the change of every DOF of a point by a step \[m\].
