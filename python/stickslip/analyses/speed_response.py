@@ -32,8 +32,8 @@ def speed_response(
 
     At a speed W the forces have the frequency of their engine order, E W; `build` makes the model
     there, with the centrifugal loads of dampers and the stiffness of the turning blades. Each speed
-    is solved by itself: where several motions exist the answer is one of them, and may be another at
-    the next speed. `forced_response` follows them over the frequency.
+    is solved by itself: where several motions exist the answer is any of them, and may be another
+    at the next speed. `forced_response` follows them over the frequency.
 
     Parameters
     ----------

@@ -21,8 +21,8 @@ use std::time::Instant;
 const LONGEST: [f64; 2] = [0.25, 0.6];
 /// Steps; the longest depends on what is wanted.
 const STEPS: Steps = Steps { first: 0.05, shortest: 1e-7, longest: 0.25, max_iterations: 20 };
-/// Change of the damping from point to point of such a branch, as a share of it or of that at rest, and
-/// the least damping, in units of 2ω, that counts.
+/// Change of the damping from point to point of such a branch, as a share of it or of its viscous part,
+/// and the least damping, in units of 2ω, that counts.
 const SEEN: [f64; 2] = [0.04, 1e-4];
 /// Shortest step that the damping asks for: there is a corner.
 const CORNER: f64 = 1e-3;
@@ -88,10 +88,9 @@ impl<'a> Walk<'a> {
                 Error::value("mode", settings.mode as f64, remedy)
             })?;
         }
-        let excess = equations.feed.share(linear.damping / equations.unit, &linear.shape);
         Ok(Self {
             settings,
-            truncation: Truncation::new(equations, excess.abs(), lowest),
+            truncation: Truncation::new(equations, lowest),
             linear,
             points: Vec::new(),
             turns: Vec::new(),
@@ -316,7 +315,8 @@ impl<'a> Walk<'a> {
     fn shows(&self, z: &[f64], ahead: &[f64]) -> bool {
         let (low, _) = self.bounds();
         let [before, after] = [z, ahead].map(|z| z[z.len() - 2]);
-        let size = before.abs().max(after.abs()).max(self.truncation.damping_at_rest).max(SEEN[1]);
+        let viscous = self.truncation.equations.viscous_feed(ahead);
+        let size = before.abs().max(after.abs()).max(viscous).max(SEEN[1]);
         log(ahead) <= low || (after - before).abs() <= SEEN[0] * size
     }
 

@@ -33,9 +33,6 @@ pub(super) struct Truncation<'a> {
     /// Whether harmonics have been given up, and those that were asked for after that: so many stay.
     eased: bool,
     lowest: usize,
-    /// What feeds the linear mode, without its sign: damping that vanishes because contacts take what the
-    /// structure gives is as accurate as its parts.
-    pub(super) damping_at_rest: f64,
     /// Highest harmonic that any point has had.
     pub(super) highest: usize,
     /// Work in harmonics that have been left.
@@ -47,7 +44,8 @@ pub(super) struct Truncation<'a> {
 pub(super) struct Step {
     z: Vec<f64>,
     step: Vec<f64>,
-    damping_at_rest: f64,
+    /// Least damping that changes count against.
+    viscous: f64,
 }
 
 impl Step {
@@ -65,10 +63,10 @@ impl Step {
         [omega, damping + omega]
     }
 
-    /// Largest relative change of frequency, damping and shape, of damping relative to that at rest where
-    /// it is more; infinite if one is not a number.
+    /// Largest relative change of frequency, damping and shape, of damping relative to its viscous part where
+    /// that is more; infinite if one is not a number.
     pub(super) fn error(&self) -> f64 {
-        let [omega, damping] = self.changes(self.damping_at_rest);
+        let [omega, damping] = self.changes(self.viscous);
         let changes = [norm(&self.step[..self.z.len() - 3]), omega, damping];
         largest(changes.into_iter())
     }
@@ -85,9 +83,8 @@ fn above(order: usize) -> usize {
 }
 
 impl<'a> Truncation<'a> {
-    /// The harmonics of these equations, whose mode has so much damping at rest, and never fewer than
-    /// `lowest`.
-    pub(super) fn new(equations: ModeEquations<'a>, damping_at_rest: f64, lowest: usize) -> Self {
+    /// The harmonics of these equations, and never fewer than `lowest`.
+    pub(super) fn new(equations: ModeEquations<'a>, lowest: usize) -> Self {
         let highest = equations.harmonics().highest();
         Self {
             equations,
@@ -95,7 +92,6 @@ impl<'a> Truncation<'a> {
             generous: 0,
             eased: false,
             lowest,
-            damping_at_rest,
             highest,
             profile: Profile::default(),
             estimate: Duration::ZERO,
@@ -175,9 +171,10 @@ impl<'a> Truncation<'a> {
         border[z.len() - 1] = 1.0;
         let weights = equations.weights(&z);
         let found = equations.solve_bordered(&z, &border, &right, &weights);
+        let viscous = equations.viscous_feed(&z);
         self.finer = Some(equations);
         self.estimate += start.elapsed();
-        found.map(|(step, _)| Step { z, step, damping_at_rest: self.damping_at_rest })
+        found.map(|(step, _)| Step { z, step, viscous })
     }
 
     /// Sum over all harmonics of the change of every DOF of a point by a step \[m\].

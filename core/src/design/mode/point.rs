@@ -73,7 +73,7 @@ impl ModePoint {
         response.keep(harmonics.highest());
         let orders = harmonics.highest() + 1;
         let turn = phase(equations, linear, z);
-        let (mut kinetic, mut viscous) = (0.0, 0.0);
+        let [kinetic, viscous] = equations.losses(z);
         let series = |order: usize, cos: f64, sin: f64| {
             c64::new(cos, -sin) * c64::from_polar(1.0, order as f64 * turn)
         };
@@ -88,29 +88,12 @@ impl ModePoint {
                 response.displacement[dof * orders + order] =
                     (0..modal.len()).map(|j| basis.shapes[(dof, j)] * modal[j]).sum();
             }
-            if order > 0 {
-                let coupled = basis.coupling.as_ref().map(|coupling| coupling.times(own));
-                let weight = (order * order) as f64;
-                for j in 0..own.nrows() {
-                    let size = own[(j, 0)].powi(2) + own[(j, 1)].powi(2);
-                    kinetic += weight * size;
-                    viscous += weight * basis.damping[j] * size;
-                    if let Some(coupled) = &coupled {
-                        let both = coupled[(j, 0)] * own[(j, 0)] + coupled[(j, 1)] * own[(j, 1)];
-                        viscous += weight * both;
-                    }
-                }
-            }
         }
         let (damping_ratio, force_level) = match &equations.feed {
             Feed::Damping => (0.5 * excess / omega, f64::NAN),
             Feed::Force(shape, size) => {
                 let force = z[z.len() - 2] * equations.unit.powi(2);
-                let own = equations.part(z, 1);
-                let along: c64 = (0..own.nrows())
-                    .map(|j| shape[j].conj() * c64::new(own[(j, 0)], -own[(j, 1)]))
-                    .sum();
-                let excess = -force * along.im / (omega * kinetic);
+                let excess = -force * along(equations, shape, z).im / (omega * kinetic);
                 (0.5 * excess / omega, force * amplitude / size)
             }
         };
@@ -183,11 +166,48 @@ impl ModePoint {
     }
 }
 
+impl ModeEquations<'_> {
+    /// `Σ k² Y_kᴴ Y_k` and `Σ k² Y_kᴴ C Y_k` of a point: what a damping ξ feeds, over ξ, and what viscous
+    /// damping takes.
+    fn losses(&self, z: &[f64]) -> [f64; 2] {
+        let (mut kinetic, mut viscous) = (0.0, 0.0);
+        for &order in self.harmonics().oscillating() {
+            let (basis, own) = (self.basis(order), self.part(z, order));
+            let coupled = basis.coupling.as_ref().map(|coupling| coupling.times(own));
+            let weight = (order * order) as f64;
+            for j in 0..own.nrows() {
+                let size = own[(j, 0)].powi(2) + own[(j, 1)].powi(2);
+                kinetic += weight * size;
+                viscous += weight * basis.damping[j] * size;
+                if let Some(coupled) = &coupled {
+                    let both = coupled[(j, 0)] * own[(j, 0)] + coupled[(j, 1)] * own[(j, 1)];
+                    viscous += weight * both;
+                }
+            }
+        }
+        [kinetic, viscous]
+    }
+
+    /// What viscous damping alone would have of the unknown that feeds a point, without its sign: where
+    /// contacts take what a negative damping gives that unknown vanishes, and its parts do not.
+    pub(super) fn viscous_feed(&self, z: &[f64]) -> f64 {
+        let ([omega, ..], [kinetic, viscous]) = (self.scalars(z), self.losses(z));
+        match &self.feed {
+            Feed::Damping => (viscous / (kinetic * self.unit)).abs(),
+            Feed::Force(shape, _) => {
+                (omega * viscous / (along(self, shape, z).im * self.unit.powi(2))).abs()
+            }
+        }
+    }
+}
+
+/// Part of the fundamental along a shape.
+fn along(equations: &ModeEquations<'_>, shape: &[c64], z: &[f64]) -> c64 {
+    let own = equations.part(z, 1);
+    (0..own.nrows()).map(|j| shape[j].conj() * c64::new(own[(j, 0)], -own[(j, 1)])).sum()
+}
+
 /// Angle by which time is moved so that the linear mode is in the fundamental with phase zero.
 fn phase(equations: &ModeEquations<'_>, linear: &Linear, z: &[f64]) -> f64 {
-    let own = equations.part(z, 1);
-    let along: c64 = (0..own.nrows())
-        .map(|j| linear.shape[j].conj() * c64::new(own[(j, 0)], -own[(j, 1)]))
-        .sum();
-    -along.arg()
+    -along(equations, &linear.shape, z).arg()
 }
