@@ -200,6 +200,26 @@ def test_a_branch_passes_the_zeros_of_its_damping(masses, damping):
     np.testing.assert_allclose(listed.damping_ratio, 0.0, atol=1e-2 * rest)
 
 
+def test_a_zero_of_damping_between_points_of_one_size_is_seen():
+    """From -0.00226 to +0.00233 is a long way, though both are of one size."""
+    three = chain()
+    structure = ss.Structure(
+        three.structure.mass,
+        three.structure.stiffness,
+        np.diag([2.0, -4.0, 1.0]),
+        three.structure.dofs,
+    )
+    own = ss.Model(structure, three.contacts)
+    branch = ss.nonlinear_modes(own, amplitude=(1e-5, 2e-2))
+    (at,) = np.flatnonzero(np.diff(np.sign(branch.damping_ratio)))
+    before, after = branch.damping_ratio[at : at + 2]
+    share = before / (before - after)
+    zero = branch.amplitude[at] * (branch.amplitude[at + 1] / branch.amplitude[at]) ** share
+    listed = ss.nonlinear_modes(own, amplitude=[zero])
+    rest = abs(branch.linear_damping_ratio)
+    np.testing.assert_allclose(listed.damping_ratio, 0.0, atol=1e-2 * rest)
+
+
 def modal_amplitudes(cycles, structure):
     """Return (X_1^H M X_1)^(1/2) of limit cycles."""
     first = np.array([cycles.coefficients(dof)[:, 1] for dof in structure.dofs])
