@@ -220,6 +220,21 @@ def test_a_zero_of_damping_between_points_of_one_size_is_seen():
     np.testing.assert_allclose(listed.damping_ratio, 0.0, atol=1e-2 * rest)
 
 
+def test_a_branch_passes_dampers_that_begin_to_slip_one_after_the_other():
+    """Each doubles the damping: it asks for some two hundred short steps."""
+    number = np.arange(12)
+    stiffness = 1e4 * 2.0**number / (2.0**number).sum()
+    limits = 1e-4 * np.exp(0.02 * number) * stiffness
+    pairs = zip(stiffness.tolist(), limits.tolist(), strict=True)
+    dampers = [ss.Jenkins("x", stiffness=k, slip_force=limit) for k, limit in pairs]
+    own = one_mass(*dampers, damping=0.0)
+    branch = ss.nonlinear_modes(own, amplitude=(5e-5, 3e-3), harmonics=5)
+    assert "mode-not-reached" not in {one.code for one in branch.diagnostics}
+    listed = ss.nonlinear_modes(own, amplitude=[1.2e-4, 3e-4, 3e-3], harmonics=5)
+    between = np.interp(np.log(listed.amplitude), np.log(branch.amplitude), branch.damping_ratio)
+    np.testing.assert_allclose(between, listed.damping_ratio, rtol=2e-3)
+
+
 def modal_amplitudes(cycles, structure):
     """Return (X_1^H M X_1)^(1/2) of limit cycles."""
     first = np.array([cycles.coefficients(dof)[:, 1] for dof in structure.dofs])
