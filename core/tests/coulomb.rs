@@ -48,6 +48,25 @@ fn check_marches(directions: usize, seed: u64, cases: usize, samples: usize, gat
     assert!(worst < gate && compared > 2 * cases / 3, "{worst:.1e} in {compared}");
 }
 
+/// Nothing presses a contact under a constant load of zero: it is the one without friction.
+#[test]
+fn a_contact_that_nothing_presses_has_no_traction() {
+    let mut random = Random(5);
+    for directions in [1, 2] {
+        let case = random_case(&mut random, directions, 5);
+        let size = directions * case.table.harmonics().slots();
+        let u = motion(&case.table, &case.displacement[..size]);
+        let [found, free] = [(0.3, 0.0), (0.0, 2.0)].map(|(friction, preload)| {
+            let closure = Closure::Preload(preload);
+            let law = Coulomb::new(directions, friction, 50.0, None, closure).unwrap();
+            load(exact(&law), u, true)
+        });
+        assert!(largest(&free.value) > 0.0);
+        assert_eq!((found.active, &found.value), (free.active, &free.value));
+        assert_eq!(found.tangent, free.tangent);
+    }
+}
+
 #[test]
 fn one_direction_agrees_with_a_fine_march() {
     check_marches(1, 41, 150, 1 << 16, 1e-6);

@@ -22,7 +22,7 @@ impl Coulomb {
     }
 
     /// Whether there is never any friction.
-    fn is_smooth(&self) -> bool {
+    pub(super) fn is_smooth(&self) -> bool {
         self.friction * self.tangential_stiffness == 0.0
             || (self.is_odd() && self.normal_at_rest() <= 0.0)
     }

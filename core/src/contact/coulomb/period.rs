@@ -41,7 +41,7 @@ const PERIODIC: f64 = 1e-13;
 pub(super) fn cycle(law: &Coulomb, drive: &Drive<'_>, residual: Residual, rates: bool) -> Cycle {
     let span = drive.harmonics().span();
     let closed = drive.closed();
-    let glides = law.friction == 0.0 || law.tangential_stiffness == 0.0;
+    let glides = law.is_smooth();
     let windows = match closed {
         Closed::Never => {
             let state = State::Open;
@@ -68,9 +68,9 @@ pub(super) fn cycle(law: &Coulomb, drive: &Drive<'_>, residual: Residual, rates:
     march.into_cycle(None)
 }
 
-/// A contact without friction slips all the time, one without spring has nothing to slip against.
+/// A contact without friction, or that nothing presses, slips all the time, one without spring has nothing to slip against.
 fn gliding(law: &Coulomb, drive: &Drive<'_>) -> State {
-    if law.friction == 0.0 {
+    if law.friction == 0.0 || law.tangential_stiffness != 0.0 {
         State::Along(0.0)
     } else {
         State::Stuck { slider: [0.0; 2], rate: vec![0.0; 2 * (drive.columns() + 2)] }
