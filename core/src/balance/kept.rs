@@ -13,6 +13,15 @@ pub(crate) fn keep<T>(kept: Option<&Kept<T>>, point: &Arc<T>) {
     }
 }
 
+/// Takes back the point that was kept last, if it is this one.
+pub(crate) fn take_back<T>(kept: Option<&Kept<T>>, point: &Arc<T>) {
+    if let Some(Ok(mut points)) = kept.map(Mutex::lock) {
+        if points.last().is_some_and(|last| Arc::ptr_eq(last, point)) {
+            points.pop();
+        }
+    }
+}
+
 /// Keeps these points and no others.
 pub(crate) fn keep_instead<T>(kept: Option<&Kept<T>>, points: &[Arc<T>]) {
     if let Some(Ok(mut kept)) = kept.map(Mutex::lock) {
