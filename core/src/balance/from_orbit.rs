@@ -106,7 +106,8 @@ impl ForcedBalance<'_> {
         suits.then(|| self.point_of_orbit(&orbit, solved.harmonics)).flatten()
     }
 
-    /// Whether an orbit is the motion of a solution, as closely as its error estimate says or the tolerance asks.
+    /// Whether an orbit is the motion of a solution, as closely as its error estimate says or the tolerance asks; not
+    /// if the error is not known.
     fn is_same_motion(&self, solved: &Point, orbit: &Point) -> bool {
         let (own, all) = (solved.harmonics + 1, orbit.harmonics + 1);
         let rows = solved.displacement.chunks_exact(own).zip(orbit.displacement.chunks_exact(all));
@@ -114,7 +115,7 @@ impl ForcedBalance<'_> {
         let apart = self.scale.relative(solved, OF_HARMONICS, apart);
         let estimate = solved.error_estimate.iter().copied();
         let error = self.scale.relative(solved, OF_HARMONICS, estimate);
-        apart <= CAUTION * error.max(self.settings.tolerance)
+        error.is_finite() && apart <= CAUTION * error.max(self.settings.tolerance)
     }
 
     /// Changes of contact states per period in a solution.
@@ -187,5 +188,34 @@ fn truncate(orbit: &Point, order: usize, half_wave: bool) -> Point {
         error_estimate,
         unknowns: Some(Unknowns { harmonics, values }),
         ..orbit.clone()
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::balance::settings::Settings;
+    use crate::contact::Cubic;
+    use crate::model::{Contact, Model};
+    use crate::structure::{HarmonicLoad, Structure};
+    use faer::{mat, Mat};
+
+    /// An orbit twice as large is another motion, also where the error of the solution is not known.
+    #[test]
+    fn an_error_that_is_not_known_makes_no_orbit_the_same_motion() {
+        let one = mat![[1.0]];
+        let structure = Structure::new(one.as_ref(), mat![[0.1]].as_ref(), one.as_ref());
+        let row = Mat::from_fn(1, 1, |_, _| 1.0);
+        let contacts = vec![Contact { law: Box::new(Cubic::new(0.3).unwrap()), rows: row }];
+        let loads = vec![HarmonicLoad { harmonic: 1, amplitude: vec![c64::new(0.2, 0.0)] }];
+        let model = Model::new(structure.unwrap(), contacts, loads).unwrap();
+        let mut balance = ForcedBalance::new(&model, Settings::default(), &[0]).unwrap();
+        let mut point = balance.solve(0.7, None).unwrap();
+        let mut other = point.clone();
+        other.displacement.iter_mut().for_each(|x| *x *= 2.0);
+        assert!(balance.is_same_motion(&point, &point) && !balance.is_same_motion(&point, &other));
+        point.error_estimate = vec![f64::NAN];
+        assert!(!balance.is_same_motion(&point, &other));
     }
 }
