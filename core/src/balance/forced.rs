@@ -269,6 +269,7 @@ impl<'a> ForcedBalance<'a> {
         }
         let x = equations.stuck_response().to_vec();
         equations.residual(&x, &mut vec![0.0; x.len()]);
+        self.add_profile(&equations.profile);
         if equations.is_linear() || !self.is_monotone() {
             return Ok(equations.is_linear());
         }

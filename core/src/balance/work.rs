@@ -63,8 +63,8 @@ impl ForcedBalance<'_> {
         self
     }
 
-    /// Grants a point its work, from here on; whatever it takes of points whose harmonics are given, and of rings
-    /// and many contacts, whose prices are told before.
+    /// Grants a point its work, from here on. Points whose harmonics are given may take whatever they need, and so
+    /// may rings and many contacts, whose prices are known before.
     pub(super) fn grant(&mut self) {
         let order = self.control.lowest_order();
         let table = self.table(order);

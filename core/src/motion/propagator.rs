@@ -176,7 +176,7 @@ impl Equations {
             return;
         }
         let modes = self.scale.len();
-        // Terms fall at once: over a stretch this short the states keep their size.
+        // Over a stretch this short the states hardly change their size: terms that are small against it are none.
         let enough = ROUNDING * states.norm_l2();
         let sizes = |count: usize| [(); 2].map(|()| Mat::<f64>::zeros(2 * modes, count));
         let [mut before, mut term] = sizes(COLUMNS.min(states.ncols()));

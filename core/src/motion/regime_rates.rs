@@ -9,7 +9,7 @@ use super::transition::Transition;
 use crate::solve::dot;
 use faer::Mat;
 
-/// Term of a power series that is none, relative to the largest, and most terms: over such a length they fall at once.
+/// Term of a power series that is none, relative to the largest, and most terms: over the longest series fewer do.
 const ROUNDING: f64 = 1e-18;
 const TERMS: usize = 60;
 /// Most length of a series, in units of the fastest rate.
