@@ -119,31 +119,37 @@ fn filled(
     factorize_symbolic_cholesky(lower, Side::Lower, order, Default::default()).ok()
 }
 
-/// An order by which separators come last (Karypis and Kumar, 1998); nothing for more entries than its numbers count.
+/// An order by which separators come last (Karypis and Kumar, 1998), behind the rows that nothing joins, among which
+/// the search would take the square of their number; nothing for more entries than its numbers count.
 fn nested_dissection(lower: Pattern<'_>) -> Option<Perm<usize>> {
     let size = lower.ncols();
     let entries = || {
         let column = |j| lower.row_idx_of_col(j).map(move |i| (i, j));
         (0..size).flat_map(column).filter(|(i, j)| i != j)
     };
-    let mut begins = vec![0_i32; size + 1];
+    let mut degrees = vec![0_i32; size];
     i32::try_from(2 * lower.compute_nnz()).ok()?;
     for (i, j) in entries() {
-        begins[i + 1] += 1;
-        begins[j + 1] += 1;
+        degrees[i] += 1;
+        degrees[j] += 1;
     }
-    for row in 0..size {
-        begins[row + 1] += begins[row];
+    let (joined, mut order): (Vec<usize>, Vec<usize>) =
+        (0..size).partition(|&row| degrees[row] > 0);
+    let (mut numbers, mut begins) = (vec![0; size], vec![0_i32]);
+    for (number, &row) in joined.iter().enumerate() {
+        numbers[row] = number;
+        begins.push(begins[number] + degrees[row]);
     }
     let place = |at: i32| usize::try_from(at).unwrap_or_default();
-    let (mut ends, mut rows) = (begins.clone(), vec![0_i32; place(begins[size])]);
+    let (mut ends, mut rows) = (begins.clone(), vec![0_i32; place(begins[joined.len()])]);
     // Columns of the upper triangle before those of the lower one, so that rows ascend.
     for (one, other) in entries().map(|(i, j)| (j, i)).chain(entries()) {
-        rows[place(ends[other])] = i32::try_from(one).ok()?;
-        ends[other] += 1;
+        let end = &mut ends[numbers[other]];
+        rows[place(*end)] = i32::try_from(numbers[one]).ok()?;
+        *end += 1;
     }
-    let order = metis_order(&CscPattern::new(size, &begins, &rows)?).ok()?;
-    let order: Vec<usize> = order.into_iter().map(place).collect();
+    let found = metis_order(&CscPattern::new(joined.len(), &begins, &rows)?).ok()?;
+    order.extend(found.into_iter().map(|at| joined[place(at)]));
     let mut inverse = vec![0; size];
     for (at, &row) in order.iter().enumerate() {
         inverse[row] = at;
@@ -198,6 +204,23 @@ mod tests {
         let own = Perm::new_checked((0..size).collect(), (0..size).collect(), size);
         assert!(dissected < numbers(SymmetricOrdering::Custom(own.as_ref())));
         assert_eq!(least_fill(grid.symbolic()).unwrap().len_val(), numbers(SymmetricOrdering::Amd));
+    }
+
+    /// Rows of a diagonal, like those of fixed degrees of freedom, are no part of what is dissected.
+    #[test]
+    fn rows_that_nothing_joins_come_first() {
+        let (size, alone) = (200, |j: usize| j % 4 == 3);
+        let rows: Vec<Vec<usize>> = (0..size)
+            .map(|j| if j + 4 < size && !alone(j) { vec![j, j + 4] } else { vec![j] })
+            .collect();
+        let mut begins = vec![0];
+        rows.iter().for_each(|own| begins.push(begins[begins.len() - 1] + own.len()));
+        let numbers = vec![1.0; begins[size]];
+        let matrix = lower_triangle(begins, rows.concat(), numbers).unwrap();
+        let order = nested_dissection(matrix.symbolic()).unwrap();
+        let (forward, _) = order.arrays();
+        assert!(forward[..size / 4].iter().all(|&row| alone(row)));
+        assert!(!forward[size / 4..].iter().any(|&row| alone(row)));
     }
 
     #[test]
