@@ -3,10 +3,10 @@
 use crate::arrays::{matrix, table, Array1, Array2};
 use crate::watch::whole;
 use numpy::PyArray2;
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyMemoryError, PyValueError};
 use pyo3::prelude::*;
 use std::sync::Arc;
-use stickslip_core::structure;
+use stickslip_core::structure::{self, Unfactored};
 
 /// Cholesky's factor of a sparse matrix.
 #[pyclass(frozen, module = "stickslip._core")]
@@ -14,8 +14,8 @@ pub struct SparseCholesky(Arc<structure::SparseCholesky>);
 
 #[pymethods]
 impl SparseCholesky {
-    /// Of a symmetric matrix in compressed columns; a `ValueError` if it is not positive definite or the factor does
-    /// not fit into memory.
+    /// Of a symmetric matrix in compressed columns; a `ValueError` if it is not positive definite, a `MemoryError` if
+    /// the factor does not fit into memory.
     #[new]
     fn new(
         py: Python<'_>,
@@ -29,8 +29,11 @@ impl SparseCholesky {
         let rows = rows.as_array().iter().map(|&row| place(row.into())).collect();
         let numbers = numbers.as_array().to_vec();
         let factor = whole(py, move |_| Ok(structure::SparseCholesky::new(begins, rows, numbers)))?;
-        let refused = || PyValueError::new_err("matrix: not positive definite, or too large");
-        Ok(Self(Arc::new(factor.ok_or_else(refused)?)))
+        let refused = |why| match why {
+            Unfactored::NotDefinite => PyValueError::new_err("matrix: not positive definite"),
+            Unfactored::TooLarge => PyMemoryError::new_err("matrix: its factor is too large"),
+        };
+        Ok(Self(Arc::new(factor.map_err(refused)?)))
     }
 
     /// Numbers that the factor has, some of them zero.

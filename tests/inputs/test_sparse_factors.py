@@ -1,5 +1,8 @@
 """Factors of sparse matrices: Cholesky's if they are positive definite, others if they are not."""
 
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 from scipy.sparse import csc_array, diags_array, kron, random_array
@@ -40,3 +43,33 @@ def test_random_patterns_have_the_solutions_of_full_matrices():
 def test_a_singular_matrix_is_refused():
     with pytest.raises(RuntimeError):
         Factor(csc_array(np.diag([1.0, 0.0, 2.0])))
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the address space is limited by Linux alone")
+def test_a_factor_that_does_not_fit_is_not_sought_by_another_method():
+    """SuperLU would need more memory still, and take minutes to say so."""
+    code = """
+import resource
+import numpy as np
+from scipy.sparse import csc_array, diags_array, kron
+from stickslip.fe import sparse
+
+one = diags_array([-1.0, 2.0, -1.0], offsets=[-1, 0, 1], shape=(36, 36))
+unit = diags_array([np.ones(36)], offsets=[0])
+plane = kron(one, unit) + kron(unit, one)
+matrix = csc_array(kron(plane, unit) + kron(kron(unit, unit), one))
+sparse.Factor(csc_array(np.eye(3)))
+taken = 4096 * int(open("/proc/self/statm").read().split()[0])
+resource.setrlimit(resource.RLIMIT_AS, (taken + (ROOM << 20), -1))
+sparse._lu = lambda matrix: print("SuperLU")
+try:
+    sparse.Factor(matrix)
+    print("factored")
+except MemoryError as error:
+    print(error)
+"""
+    told = []
+    for room in (60, 2000):
+        run = [sys.executable, "-c", code.replace("ROOM", str(room))]
+        told.append(subprocess.run(run, capture_output=True, text=True, timeout=60).stdout.strip())
+    assert told == ["matrix: its factor is too large", "factored"]

@@ -52,7 +52,7 @@ pub(crate) use proportional::ModalDamping;
 pub use quasi_static::QuasiStatic;
 pub use ring::{Ring, RingCoupling, RingSector};
 pub use ring_order::{RingLayout, RingMotion, RingOrder};
-pub use sparse_cholesky::SparseCholesky;
+pub use sparse_cholesky::{SparseCholesky, Unfactored};
 pub use system::Structure;
 
 use crate::Error;

@@ -14,6 +14,15 @@ const LARGE: usize = 10_000_000;
 
 type Pattern<'a> = SymbolicSparseColMatRef<'a, usize>;
 
+/// Why a matrix has no factor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Unfactored {
+    /// It is not positive definite, or no matrix.
+    NotDefinite,
+    /// The factor does not fit into memory.
+    TooLarge,
+}
+
 /// The factor L of `P A Pᵀ = L Lᵀ`, in an order that fills in little.
 #[derive(Debug)]
 pub struct SparseCholesky {
@@ -23,17 +32,22 @@ pub struct SparseCholesky {
 
 impl SparseCholesky {
     /// Of a symmetric matrix, column by column: where each begins, its rows ascending, its numbers, of which those
-    /// above the diagonal are not looked at. Nothing if the matrix is not positive definite, is none, or its factor
-    /// does not fit into memory.
-    #[must_use]
-    pub fn new(begins: Vec<usize>, rows: Vec<usize>, numbers: Vec<f64>) -> Option<Self> {
-        let matrix = lower_triangle(begins, rows, numbers)?;
-        let pattern = least_fill(matrix.symbolic())?;
+    /// above the diagonal are not looked at.
+    ///
+    /// # Errors
+    /// The matrix is not positive definite, or is none, or its factor does not fit into memory.
+    pub fn new(
+        begins: Vec<usize>,
+        rows: Vec<usize>,
+        numbers: Vec<f64>,
+    ) -> Result<Self, Unfactored> {
+        let matrix = lower_triangle(begins, rows, numbers).ok_or(Unfactored::NotDefinite)?;
+        let pattern = least_fill(matrix.symbolic()).ok_or(Unfactored::TooLarge)?;
         let mut factor = Vec::new();
-        factor.try_reserve_exact(pattern.len_val()).ok()?;
+        factor.try_reserve_exact(pattern.len_val()).map_err(|_| Unfactored::TooLarge)?;
         factor.resize(pattern.len_val(), 0.0);
         let work = pattern.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default());
-        let mut work = MemBuffer::try_new(work).ok()?;
+        let mut work = MemBuffer::try_new(work).map_err(|_| Unfactored::TooLarge)?;
         let found = pattern.factorize_numeric_llt(
             &mut factor,
             matrix.as_ref(),
@@ -43,8 +57,8 @@ impl SparseCholesky {
             MemStack::new(&mut work),
             Default::default(),
         );
-        found.is_ok().then_some(())?;
-        Some(Self { pattern, factor })
+        found.map_err(|_| Unfactored::NotDefinite)?;
+        Ok(Self { pattern, factor })
     }
 
     /// Numbers that the factor has, some of them zero.
@@ -162,7 +176,7 @@ mod tests {
     use super::*;
 
     /// A chain by its lower triangle.
-    fn chain(size: usize, own: f64) -> Option<SparseCholesky> {
+    fn chain(size: usize, own: f64) -> Result<SparseCholesky, Unfactored> {
         let begins = (0..size).map(|j| 2 * j).chain([2 * size - 1]).collect();
         let rows = (0..size).flat_map(|j| [j, j + 1]).take(2 * size - 1).collect();
         let numbers = (0..size).flat_map(|_| [own, -1.0]).take(2 * size - 1).collect();
@@ -181,29 +195,55 @@ mod tests {
         }
     }
 
+    /// A grid by its lower triangle: where columns begin, their rows, their numbers.
+    fn grid(side: usize) -> (Vec<usize>, Vec<usize>, Vec<f64>) {
+        let (mut begins, mut rows, mut numbers) = (vec![0], Vec::new(), Vec::new());
+        for j in 0..side.pow(3) {
+            rows.push(j);
+            numbers.push(6.0);
+            for step in [1, side, side * side] {
+                if j / step % side + 1 < side {
+                    rows.push(j + step);
+                    numbers.push(-1.0);
+                }
+            }
+            begins.push(rows.len());
+        }
+        (begins, rows, numbers)
+    }
+
     #[test]
     fn nested_dissection_fills_in_less_than_the_order_of_a_grid() {
-        let (side, size) = (16, 16 * 16 * 16);
-        let ends_of = |j: usize| {
-            let (x, y, z) = (j % side, j / side % side, j / side / side);
-            let inside = [(x, 1), (y, side), (z, side * side)].into_iter();
-            let beside = inside.filter(|(at, _)| at + 1 < side).map(move |(_, step)| j + step);
-            [j].into_iter().chain(beside).collect::<Vec<_>>()
-        };
-        let columns: Vec<_> = (0..size).map(ends_of).collect();
-        let ends = columns.iter().scan(0, |end, column| {
-            *end += column.len();
-            Some(*end)
-        });
-        let begins = [0].into_iter().chain(ends).collect();
-        let numbers = columns.iter().flatten().map(|_| 1.0).collect();
-        let grid = lower_triangle(begins, columns.concat(), numbers).unwrap();
-        let order = nested_dissection(grid.symbolic()).unwrap();
-        let numbers = |order| filled(grid.symbolic(), order).unwrap().len_val();
+        let size = 16_usize.pow(3);
+        let (begins, rows, numbers) = grid(16);
+        let matrix = lower_triangle(begins, rows, numbers).unwrap();
+        let order = nested_dissection(matrix.symbolic()).unwrap();
+        let numbers = |order| filled(matrix.symbolic(), order).unwrap().len_val();
         let dissected = numbers(SymmetricOrdering::Custom(order.as_ref()));
         let own = Perm::new_checked((0..size).collect(), (0..size).collect(), size);
         assert!(dissected < numbers(SymmetricOrdering::Custom(own.as_ref())));
-        assert_eq!(least_fill(grid.symbolic()).unwrap().len_val(), numbers(SymmetricOrdering::Amd));
+        let least = least_fill(matrix.symbolic()).unwrap().len_val();
+        assert_eq!(least, numbers(SymmetricOrdering::Amd));
+    }
+
+    #[test]
+    fn large_factors_are_dissected_and_their_solutions_those_of_the_matrix() {
+        let (begins, rows, numbers) = grid(36);
+        let matrix = lower_triangle(begins.clone(), rows.clone(), numbers.clone()).unwrap();
+        let factor = SparseCholesky::new(begins, rows, numbers).unwrap();
+        let by_degree = filled(matrix.symbolic(), SymmetricOrdering::Amd).unwrap().len_val();
+        assert!(LARGE < by_degree && factor.numbers() < by_degree);
+        let right = |i: usize| (i as f64).sin();
+        let found = factor.solve(Mat::from_fn(factor.size(), 1, |i, _| right(i)));
+        let mut image = vec![0.0; factor.size()];
+        for j in 0..factor.size() {
+            for (i, &number) in matrix.row_idx_of_col(j).zip(matrix.val_of_col(j)) {
+                image[i] += number * found[(j, 0)];
+                image[j] += if i == j { 0.0 } else { number * found[(i, 0)] };
+            }
+        }
+        let worst = image.iter().enumerate().map(|(i, x)| (x - right(i)).abs());
+        assert!(worst.fold(0.0, f64::max) < 1e-12);
     }
 
     /// Rows of a diagonal, like those of fixed degrees of freedom, are no part of what is dissected.
@@ -225,15 +265,15 @@ mod tests {
 
     #[test]
     fn what_has_no_factor_has_none() {
-        assert!(chain(50, 1.0).is_none());
-        assert!(SparseCholesky::new(vec![], vec![], vec![]).is_none());
+        assert_eq!(chain(50, 1.0).err(), Some(Unfactored::NotDefinite));
+        assert!(SparseCholesky::new(vec![], vec![], vec![]).is_err());
         for (begins, rows) in [
             (vec![0, 1, 2], vec![0, 2]),
             (vec![0, 2, 2], vec![1, 0]),
             (vec![0, 3, 2], vec![0, 1]),
             (vec![0, 1, 1], vec![0, 1]),
         ] {
-            assert!(SparseCholesky::new(begins, rows, vec![1.0, 1.0]).is_none());
+            assert!(SparseCholesky::new(begins, rows, vec![1.0, 1.0]).is_err());
         }
     }
 }
