@@ -206,6 +206,12 @@ mod tests {
         Model::new(structure.unwrap(), (0..8).map(contact).collect(), loads).unwrap()
     }
 
+    fn after_some_periods(system: &ModalSystem) -> State {
+        let mut state = State::rest(system);
+        Flow::new(system, OMEGA).run(&mut state, 3.0 * TAU / OMEGA, &mut |_| {}).unwrap();
+        state
+    }
+
     /// Phases of a period from a state, and the state behind it.
     fn passed(system: &ModalSystem, start: &State) -> (Vec<LinearPhase>, State) {
         let (mut phases, mut state) = (Vec::new(), start.clone());
@@ -224,8 +230,7 @@ mod tests {
     fn a_motion_beside_another_is_that_of_a_pass() {
         let model = model();
         let system = ModalSystem::new(&model).unwrap();
-        let mut start = State::rest(&system);
-        Flow::new(&system, OMEGA).run(&mut start, 3.0 * TAU / OMEGA, &mut |_| {}).unwrap();
+        let start = after_some_periods(&system);
         let own = Transition::new(&system, OMEGA);
         let (phases, end) = passed(&system, &start);
         assert!(phases.len() > 20, "{}", phases.len());
@@ -260,8 +265,7 @@ mod tests {
     fn where_events_change_their_places_there_is_none() {
         let model = model();
         let system = ModalSystem::new(&model).unwrap();
-        let mut start = State::rest(&system);
-        Flow::new(&system, OMEGA).run(&mut start, 3.0 * TAU / OMEGA, &mut |_| {}).unwrap();
+        let start = after_some_periods(&system);
         let own = Transition::new(&system, OMEGA);
         let (phases, _) = passed(&system, &start);
         let mut known = Propagators::default();
@@ -282,8 +286,7 @@ mod tests {
     fn a_mirrored_motion_takes_the_exponentials_of_the_motion() {
         let model = model();
         let system = ModalSystem::new(&model).unwrap();
-        let mut start = State::rest(&system);
-        Flow::new(&system, OMEGA).run(&mut start, 3.0 * TAU / OMEGA, &mut |_| {}).unwrap();
+        let mut start = after_some_periods(&system);
         let own = Transition::new(&system, OMEGA);
         let mut known = Propagators::default();
         known.serve(OMEGA, system.modes());

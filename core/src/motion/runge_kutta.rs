@@ -81,8 +81,8 @@ impl<'a> RungeKutta<'a> {
         for (stage, share, half_steps) in [(1, 0.5, 1), (2, 0.5, 1), (3, 1.0, 2)] {
             let (done, next) = self.stages.split_at_mut(stage);
             let (velocity, acceleration) = done[stage - 1].split_at(modes);
-            step(&mut self.trial, &state.displacement, share * h, velocity);
-            step(&mut next[0][..modes], &state.velocity, share * h, acceleration);
+            go_on(&mut self.trial, &state.displacement, share * h, velocity);
+            go_on(&mut next[0][..modes], &state.velocity, share * h, acceleration);
             self.forces(state);
             let at = 2 * index + half_steps;
             self.accelerations(stage, if at < 2 * self.steps { at } else { 0 });
@@ -168,7 +168,7 @@ impl<'a> RungeKutta<'a> {
 }
 
 /// Where a rate leads from some values over a length.
-fn step(to: &mut [f64], from: &[f64], length: f64, rate: &[f64]) {
+fn go_on(to: &mut [f64], from: &[f64], length: f64, rate: &[f64]) {
     for ((to, from), rate) in to.iter_mut().zip(from).zip(rate) {
         *to = from + length * rate;
     }

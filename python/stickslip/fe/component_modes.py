@@ -16,6 +16,7 @@ from stickslip.checks import (
     whole_number,
 )
 from stickslip.errors import ModelError
+from stickslip.fe.reduced_modes import MASSLESS
 from stickslip.fe.reduction import Reduction, panels
 from stickslip.fe.sparse import DENSE, Factor, lowest_modes, symmetric_sparse
 from stickslip.model.matrix_units import MatrixUnits, Units
@@ -27,8 +28,6 @@ if TYPE_CHECKING:
 Dof: TypeAlias = int | str
 _FIRST = 20
 """Modes computed at first where a frequency says how many are wanted."""
-_MASSLESS = 1e-12
-"""Inertia below this part of the largest is none."""
 _NOISE = 1e3
 """Eigenvalues below this many rounding errors of the largest are rigid-body motions."""
 
@@ -107,7 +106,7 @@ def craig_bampton(
     inner = np.setdiff1d(np.arange(size), kept)
     K_ii, M_ii = K[inner][:, inner].tocsc(), M[inner][:, inner].tocsc()
     inertia = M_ii.diagonal()
-    moving = inertia > max(_MASSLESS * inertia.max(), 0.0)
+    moving = inertia > max(MASSLESS * inertia.max(), 0.0)
     most = _most_modes(M_ii, moving)
     count = _mode_count(modes, omega, most)
     try:

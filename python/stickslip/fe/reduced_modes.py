@@ -12,7 +12,7 @@ from stickslip.checks import Matrix, unknown
 from stickslip.errors import ModelError
 from stickslip.units import physical_number
 
-_MASSLESS = 1e-12
+MASSLESS = 1e-12
 """Inertia below this part of the largest is none."""
 
 
@@ -47,7 +47,7 @@ def natural_modes(
             if springs
             else "stiffness: it is not that of a stable structure; look at the matrices"
         ) from None
-    inert = np.flatnonzero(inverses > _MASSLESS * inverses[-1])[::-1]
+    inert = np.flatnonzero(inverses > MASSLESS * inverses[-1])[::-1]
     return shift + 1.0 / inverses[inert], shapes[:, inert] / np.sqrt(inverses[inert])
 
 

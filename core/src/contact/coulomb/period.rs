@@ -68,7 +68,8 @@ pub(super) fn cycle(law: &Coulomb, drive: &Drive<'_>, residual: Residual, rates:
     march.into_cycle(None)
 }
 
-/// A contact without friction, or that nothing presses, slips all the time, one without spring has nothing to slip against.
+/// A contact without friction, or that nothing presses, slips all the time; one without spring has nothing to slip
+/// against.
 fn gliding(law: &Coulomb, drive: &Drive<'_>) -> State {
     if law.friction == 0.0 || law.tangential_stiffness != 0.0 {
         State::Along(0.0)
