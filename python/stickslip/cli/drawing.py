@@ -39,7 +39,7 @@ class Wanted:
             first, second, *_ = asked
             raise ModelError(f"--{first} and --{second} exclude each other; give one")
         if not asked:
-            return self._default([result for _, result in results])
+            return self._default(results)
         ((picture, omega),) = asked.items()
         panels: list[Panel] = []
         for name, result in results:
@@ -52,14 +52,15 @@ class Wanted:
             panels += (titled(panel, name) for panel in single) if len(results) > 1 else single
         return picture, panels
 
-    def _default(self, results: Sequence[Result]) -> tuple[str, list[Panel]]:
+    def _default(self, named: Sequence[tuple[str, Result]]) -> tuple[str, list[Panel]]:
         from stickslip import plot
 
+        results = [result for _, result in named]
         view, dofs = view_of(results), self._dofs(results[0])
         curves = [result for result in results if isinstance(result, ForcedResponse)]
         if not curves:
             output = OutputTable(omega_unit=self.omega_unit)
-            return results[0].kind.replace("_", "-"), view.panels(results, dofs, output)
+            return results[0].kind.replace("_", "-"), view.named_panels(named, dofs, output)
         drawn = partial(
             plot.curves,
             curves,

@@ -8,7 +8,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
 from shlex import quote
-from typing import TYPE_CHECKING, Annotated, cast
+from typing import TYPE_CHECKING, Annotated, Any, cast
 
 import typer
 
@@ -21,6 +21,9 @@ from stickslip.interruption import Interruption
 if TYPE_CHECKING:
     from stickslip.results.result import Result
     from stickslip.study import Case, Study
+    from stickslip.study.tables import OutputTable
+    from stickslip.views.kinds import View
+    from stickslip.views.picture import Panels
 
 
 class Clock(dict[str, float]):
@@ -65,10 +68,10 @@ def run(
     results = _compute(loaded, out, clock, quiet=quiet)
     output = loaded.tables.output
     view = view_of(results, output.omega_unit)
+    levels = ["" if one.level is None else f"{one.level:.10g}" for one in loaded.cases]
+    named = list(zip(levels, results, strict=True))
     if not quiet:
-        levels = ["" if one.level is None else f"{one.level:.10g}" for one in loaded.cases]
         label = "" if loaded.tables.analysis.levels is None else "level"
-        named = list(zip(levels, results, strict=True))
         with clock("refining peaks, printing"):
             console.show_all(view.tables(named, label, loaded.dofs, output.length_unit))
     picture = None if no_plot else out / f"{loaded.name}.png"
@@ -76,7 +79,7 @@ def run(
     if picture is not None:
         try:
             with clock("drawing"):
-                draw(view.panels(results, loaded.dofs, output), picture)
+                draw(_panels(view, named, loaded.dofs, output), picture)
         except ModelError as error:
             # The results are saved: what there is to say of them comes first.
             picture, undrawn = None, error
@@ -89,6 +92,20 @@ def run(
         raise undrawn
     if not complete:
         raise typer.Exit(NOT_CONVERGED)
+
+
+def _panels(
+    view: View[Any], named: Sequence[tuple[str, Result]], dofs: Sequence[str], output: OutputTable
+) -> Panels:
+    """Return the picture of results at the levels that are their names."""
+    from stickslip.results.forced_response import ForcedResponse
+
+    results = [result for _, result in named]
+    if isinstance(results[0], ForcedResponse):
+        # the legend has their forces
+        return view.panels(results, dofs, output)
+    at_levels = [(f"level {level}", result) for level, result in named]
+    return view.named_panels(at_levels, dofs, output)
 
 
 def warned(results: Sequence[tuple[str, Result]]) -> bool:

@@ -23,7 +23,7 @@ from stickslip.model.notable import notable_dofs
 from stickslip.results.result import Result
 from stickslip.results.store import content_of
 from stickslip.study.tables import OutputTable
-from stickslip.views.kinds import VIEWS, cautions, failures, view_of
+from stickslip.views.kinds import VIEWS, View, cautions, failures, view_of
 from stickslip.views.picture import Panel
 from stickslip.views.tables import Row, Table, tabulated
 
@@ -110,11 +110,21 @@ def _group(
         sections.append(section)
     return {
         "heading": " and ".join(dict.fromkeys(map(_kind, results))),
-        "figures": _figures(view.panels(results, shown, output)),
+        "figures": _together(view, named, shown, output),
         "tables": view.tables(named, label, shown, output.length_unit),
         "models": models,
         "sections": sections,
     }
+
+
+def _together(
+    view: View[Any], named: Sequence[tuple[str, Result]], dofs: Sequence[str], output: OutputTable
+) -> list[Drawn | str]:
+    """Return the figures that results have together, or why there is none."""
+    try:
+        return _figures(view.named_panels(named, dofs, output))
+    except ModelError as error:
+        return [str(error)]
 
 
 def _figures(panels: Iterable[Panel]) -> list[Drawn | str]:

@@ -327,15 +327,19 @@ def _shares(result: ForcedResponse, contact: PointRef) -> list[tuple[str, Float,
     return list(zip(names, shares, opens, strict=True))
 
 
-def _names_of(results: Sequence[ForcedResponse]) -> list[str]:
-    """Return what distinguishes the results, one label each."""
+def traits_of(results: Sequence[ForcedResponse]) -> list[str]:
+    """Return what distinguishes results, one text each; empty ones if nothing does."""
     traits = [_traits(result) for result in results]
     telling = [key for key in traits[0] if len({trait.get(key) for trait in traits}) > 1]
-    if len(results) == 1:
-        telling = ["P"]
-    elif not telling:
-        return [f"result {position}" for position in range(len(results))]
     return [", ".join(trait[key] for key in telling if key in trait) for trait in traits]
+
+
+def _names_of(results: Sequence[ForcedResponse]) -> list[str]:
+    """Return one label per result."""
+    if len(results) == 1:
+        return [_traits(results[0])["P"]]
+    traits = traits_of(results)
+    return traits if any(traits) else [f"result {place}" for place in range(len(results))]
 
 
 def _traits(result: ForcedResponse) -> dict[str, str]:

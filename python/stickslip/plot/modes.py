@@ -41,7 +41,7 @@ def backbone(
         The axes of the frequency.
     """
     branches = several(NonlinearModes, results)
-    names = checked_labels(options["labels"], _names(branches))
+    names = checked_labels(options["labels"], names_of(branches))
     omega = style.omega_scale(options["omega_unit"], branches)
     made, ax, below = options["ax"] is None, options["ax"], None
     if made and options["damping"]:
@@ -78,7 +78,7 @@ def mode_damping(
         The axes.
     """
     branches = several(NonlinearModes, results)
-    names = checked_labels(options["labels"], _names(branches))
+    names = checked_labels(options["labels"], names_of(branches))
     made, ax = options["ax"] is None, style.new_axes(options["ax"])
     for one, name, colour in zip(branches, names, style.colours(len(branches)), strict=True):
         _damping(ax, one, colour, name)
@@ -87,7 +87,7 @@ def mode_damping(
     return ax
 
 
-def _names(branches: Sequence[NonlinearModes]) -> list[str]:
+def names_of(branches: Sequence[NonlinearModes]) -> list[str]:
     """Return the modes by number, with the method and nodal diameter where these differ."""
     names = [f"mode {one.settings.mode}" for one in branches]
     if len({one.settings.method for one in branches}) > 1:

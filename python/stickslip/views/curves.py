@@ -18,7 +18,7 @@ from stickslip.results.fields import Int
 from stickslip.results.forced_response import ForcedResponse
 from stickslip.results.stability import stability_counts
 from stickslip.views.kinds import LENGTHS, RPM, Dofs, Rows, View
-from stickslip.views.picture import Panel, Panels
+from stickslip.views.picture import Panel, Panels, labelled
 from stickslip.views.tables import Row, Table, bound_rows, tabulated
 
 if TYPE_CHECKING:
@@ -116,6 +116,18 @@ class CurveView(View[ForcedResponse]):
         length, omega = output.length_unit, output.omega_unit
         draw = partial(plots.curves, results, omega_unit=omega, length_unit=length)
         return [partial(draw, dof) for dof in dofs]
+
+    def named_panels(
+        self, results: Sequence[tuple[str, ForcedResponse]], dofs: Dofs, output: OutputTable
+    ) -> Panels:
+        """Return the same, with the names of several results and what tells them apart."""
+        names, curves = zip(*results, strict=True)
+        drawn = self.panels(curves, dofs, output)
+        if len(curves) == 1:
+            return drawn
+        from stickslip.plot.curves import traits_of
+
+        return labelled(drawn, names, traits_of(curves))
 
     def details(self, result: ForcedResponse, dofs: Dofs, output: OutputTable) -> Panels:
         """Return blades, slip, loops at the peak and multipliers, as far as a curve has them."""

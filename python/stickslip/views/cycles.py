@@ -12,7 +12,7 @@ from stickslip.drawn import plots
 from stickslip.results.limit_cycles import LimitCycles, StabilityMap
 from stickslip.results.stability import STATES, stability_counts
 from stickslip.views.kinds import Dofs, Rows, View
-from stickslip.views.picture import Panels
+from stickslip.views.picture import Panels, labelled, titled
 from stickslip.views.tables import Row, counted
 
 if TYPE_CHECKING:
@@ -78,6 +78,21 @@ class CycleView(View[LimitCycles]):
         return [
             *(partial(curves, dof) for dof in dofs),
             *(partial(plots.cycle_multipliers, result) for result in known),
+        ]
+
+    def named_panels(
+        self, results: Sequence[tuple[str, LimitCycles]], dofs: Dofs, output: OutputTable
+    ) -> Panels:
+        """Return the same, with the names of several results."""
+        names, branches = zip(*results, strict=True)
+        drawn = self.panels(branches, dofs, output)
+        if len(branches) == 1:
+            return drawn
+        modes = [f"mode {one.settings.mode}" for one in branches]
+        known = [name for name, one in results if one.arrays.known.any()]
+        return [
+            *labelled(drawn[: len(dofs)], names, modes),
+            *(titled(panel, name) for panel, name in zip(drawn[len(dofs) :], known, strict=True)),
         ]
 
 

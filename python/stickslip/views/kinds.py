@@ -14,7 +14,7 @@ from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.results.diagnostic import Severity
 from stickslip.results.result import Result
-from stickslip.views.picture import Panels
+from stickslip.views.picture import Panels, titled
 from stickslip.views.tables import Row, Table, assumed, model_rows, tabulated
 
 if TYPE_CHECKING:
@@ -148,6 +148,29 @@ class View(ABC, Generic[Kind]):
     @abstractmethod
     def panels(self, results: Sequence[Kind], dofs: Dofs, output: OutputTable) -> Panels:
         """Return the default picture of results, together."""
+
+    def named_panels(
+        self, results: Sequence[tuple[str, Kind]], dofs: Dofs, output: OutputTable
+    ) -> Panels:
+        """Return the default picture of results, each with its name where there are several.
+
+        Raises
+        ------
+        ModelError
+            If none of them has a picture; single ones without are left out.
+        """
+        drawn: Panels = []
+        refused: ModelError | None = None
+        for name, result in results:
+            try:
+                own = self.panels([result], dofs, output)
+            except ModelError as error:
+                refused = error
+            else:
+                drawn += [titled(panel, name) for panel in own] if len(results) > 1 else own
+        if refused is not None and not drawn:
+            raise refused
+        return drawn
 
     def details(self, result: Kind, dofs: Dofs, output: OutputTable) -> Panels:
         """Return what a report shows of one result beside the default picture."""

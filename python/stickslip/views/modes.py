@@ -11,7 +11,7 @@ import numpy as np
 from stickslip.drawn import plots
 from stickslip.results.nonlinear_modes import NonlinearModes
 from stickslip.views.kinds import Dofs, Rows, View
-from stickslip.views.picture import Panels
+from stickslip.views.picture import Panels, labelled
 from stickslip.views.tables import Row, counted
 
 if TYPE_CHECKING:
@@ -69,3 +69,15 @@ class ModeView(View[NonlinearModes]):
             partial(plots.backbone, list(results), damping=False, **options),
             partial(plots.mode_damping, list(results)),
         ]
+
+    def named_panels(
+        self, results: Sequence[tuple[str, NonlinearModes]], dofs: Dofs, output: OutputTable
+    ) -> Panels:
+        """Return the same, with the names of several results."""
+        names, modes = zip(*results, strict=True)
+        drawn = self.panels(modes, dofs, output)
+        if len(modes) == 1:
+            return drawn
+        from stickslip.plot.modes import names_of
+
+        return labelled(drawn, names, names_of(modes))

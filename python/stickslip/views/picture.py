@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Protocol, TypeAlias
 
@@ -60,6 +61,16 @@ def drawn_as(panels: Sequence[Panel], suffix: str, entry: str) -> memoryview:
     picture = io.BytesIO()
     figure.savefig(picture, format=kind, dpi=150)
     return picture.getbuffer()
+
+
+def labelled(
+    panels: Iterable[Callable[..., object]], names: Sequence[str], traits: Sequence[str]
+) -> Panels:
+    """Name the curves of panels: by their results, each with what distinguishes it, if anything."""
+    labels = list(names)
+    if len(set(traits)) > 1:
+        labels = [f"{name}: {trait}" for name, trait in zip(names, traits, strict=True)]
+    return [partial(panel, labels=labels) for panel in panels]
 
 
 def titled(panel: Panel, name: str) -> Panel:

@@ -12,7 +12,7 @@ import numpy as np
 from stickslip.drawn import plots
 from stickslip.results.speed_response import SpeedResponse
 from stickslip.views.kinds import Dofs, Rows, View
-from stickslip.views.picture import Panels
+from stickslip.views.picture import Panels, labelled
 from stickslip.views.tables import Row
 
 if TYPE_CHECKING:
@@ -68,3 +68,17 @@ class SpeedView(View[SpeedResponse]):
             partial(draw, [one for one in results if one.dof == dof])
             for dof in dict.fromkeys(one.dof for one in results)
         ]
+
+    def named_panels(
+        self, results: Sequence[tuple[str, SpeedResponse]], dofs: Dofs, output: OutputTable
+    ) -> Panels:
+        """Return the same, with the names of several results."""
+        drawn = self.panels([one for _, one in results], dofs, output)
+        if len(results) == 1:
+            return drawn
+        panels: Panels = []
+        for panel, dof in zip(drawn, dict.fromkeys(one.dof for _, one in results), strict=True):
+            own = [(name, one) for name, one in results if one.dof == dof]
+            orders = [f"EO {one.engine_order:g}" for _, one in own]
+            panels += labelled([panel], [name for name, _ in own], orders)
+        return panels
