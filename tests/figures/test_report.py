@@ -308,3 +308,30 @@ def test_dofs_that_are_no_names_are_refused_in_one_line(dofs, tmp_path):
     with pytest.raises(ss.ModelError, match=r"^dofs: ") as refused:
         ss.report(frf, tmp_path / "a.html", dofs=dofs)
     assert "\n" not in str(refused.value)
+
+
+# ---------------------------------------------------------------------------------- several results
+
+
+@pytest.mark.parametrize("kind", ["curve", "transient", "boundary", "fitted", "levels"])
+def test_figures_of_one_result_have_its_name(results, kind, tmp_path):
+    ss.report({"this": results[kind], "that": results[kind]}, tmp_path / "a.html")
+    titles = [one["layout"]["title"]["text"] for one in Page(tmp_path / "a.html").figures]
+    assert titles[0].startswith("this")
+    assert any(title.startswith("that") for title in titles)
+
+
+@pytest.mark.parametrize("kind", ["low", "exact", "branch", "backbone", "revolving"])
+def test_curves_of_one_figure_have_the_names_of_their_results(results, kind, tmp_path):
+    ss.report({"this": results[kind], "that": results[kind]}, tmp_path / "a.html")
+    assert {"this", "that"} <= set(names_of(Page(tmp_path / "a.html").figures[0]))
+
+
+def test_a_motion_without_a_picture_costs_no_other_result(results, tmp_path):
+    decays = ss.classify(ss.reference.single_dof(), {"mass": 5e-5})
+    ss.report({"decays": decays, "settled": results["settled"]}, tmp_path / "a.html")
+    assert len(Page(tmp_path / "a.html").figures) == 1
+    ss.report({"decays": decays, "curve": results["curve"]}, tmp_path / "b.html")
+    page = Page(tmp_path / "b.html")
+    assert "No figure: motion: one that decays or grows for ever has no picture" in page.text
+    assert len(page.figures) == 1

@@ -8,10 +8,12 @@ from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.ticker import MaxNLocator
 
 from packed import numbers
 from stickslip.html.figures import drawn
 from stickslip.html.notation import label
+from stickslip.plot.style import finish, number_bar
 
 
 @pytest.mark.parametrize(
@@ -159,3 +161,64 @@ def test_what_plotly_cannot_draw_is_a_still_picture():
     assert found.data == ""
     assert found.still.startswith("data:image/png;base64,")
     assert found.caption == "height"
+
+
+def test_bars_stand_where_they_are_drawn_in_any_unit():
+    def draw(ax: Axes) -> None:
+        ax.bar([0.001, 0.003], [2.0, 3.0], 0.002, color="0.8", label="limit")
+        ax.bar([0.001, 0.003], [1.0, 2.0], 0.001, label="traction")
+        ax.set(xlabel="amplitude [m]")
+        finish(ax, made=True)
+
+    figure = figure_of(draw)
+    assert figure["layout"]["barmode"] == "overlay"
+    assert figure["layout"]["xaxis"]["title"]["text"] == "amplitude [mm]"
+    wide, narrow = figure["data"]
+    for bars, width in ((wide, 2.0), (narrow, 1.0)):
+        assert numbers(bars["x"]) == pytest.approx([1.0, 3.0])
+        assert numbers(bars["width"]) == pytest.approx([width, width])
+
+
+@pytest.mark.parametrize(
+    ("ends", "whole"), [((12.0, 40.0), True), ((0.1, 9.0), True), ((1e-7, 1.0), False)]
+)
+def test_a_logarithmic_axis_writes_whole_numbers_where_decades_are_few(ends, whole):
+    def draw(ax: Axes) -> None:
+        ax.plot([1, 2], [1, 2])
+        ax.set(xscale="log", xlim=ends)
+
+    axis = figure_of(draw)["layout"]["xaxis"]
+    # Without a format plotly writes the 2 of 20 and of 0.2 alike.
+    assert axis["tickformat"] == (".6~g" if whole else "")
+    # A fixed step would leave what is enlarged without numbers.
+    assert "dtick" not in axis
+    assert 2 <= axis["nticks"] <= 8
+
+
+def test_whole_numbers_have_a_tick_each():
+    def draw(ax: Axes) -> None:
+        ax.plot([2, 4], [1.0, 2.0], "o")
+        ax.xaxis.set_major_locator(MaxNLocator(integer=True))
+
+    axis = figure_of(draw)["layout"]["xaxis"]
+    assert (axis["tick0"], axis["dtick"]) == (0, 1)
+
+
+def test_a_logarithmic_bar_of_colours_has_numbers_between_its_decades():
+    def draw(ax: Axes) -> None:
+        mesh = ax.pcolormesh([0, 1, 2], [0, 1], [[0.3, 2.5]], norm=LogNorm())
+        number_bar(ax.figure.colorbar(mesh, ax=ax).ax)
+
+    (heat,) = figure_of(draw)["data"]
+    assert {"0.5", "1", "2"} <= set(heat["colorbar"]["ticktext"])
+
+
+def test_long_titles_fit_beside_the_frame_and_lines_stay_lines():
+    def draw(ax: Axes) -> None:
+        ax.bar([0, 1], [1, 2])
+        ax.set_xticks([0, 1], ["slip_\nforce", "gap"])
+        ax.set_ylabel("prediction less measurement [standard deviations]")
+
+    layout = figure_of(draw)["layout"]
+    assert layout["yaxis"]["title"]["font"]["size"] < 12
+    assert layout["xaxis"]["ticktext"] == ["slip_<br>force", "gap"]

@@ -13,7 +13,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.text import Text
-from matplotlib.ticker import FixedFormatter, FixedLocator, FuncFormatter
+from matplotlib.ticker import (
+    FixedFormatter,
+    FixedLocator,
+    FuncFormatter,
+    MaxNLocator,
+    ScalarFormatter,
+)
 from matplotlib.transforms import Transform
 
 from stickslip.html.artists import Trace, UndrawableError, proxy, traces
@@ -27,12 +33,22 @@ _HEIGHT, _LEGEND_ROW, _LEGEND_WIDTH = 400, 22, 800
 _BUTTONS = 20
 _FONT = "system-ui, -apple-system, 'Segoe UI', 'Liberation Sans', Arial, sans-serif"
 _FEW_DECADES = 2.5
+_TICKS = 8
+"""The most of a logarithmic axis."""
+_TITLE, _LETTER = 14, 0.55
+"""Size of the title of an axis, and the mean width of a letter over it."""
+_FRAME = 280
+"""Height of the frame that is left beside titles, in pixels."""
+_INTEGERS = 12
+"""Whole numbers along an axis that are all labelled."""
 _PAGE: Trace = {
     "template": {},
     "font": {"family": _FONT, "size": 13, "color": "#1f2933"},
     "paper_bgcolor": "#ffffff",
     "plot_bgcolor": "#ffffff",
     "hovermode": "closest",
+    # bars stand where they are drawn
+    "barmode": "overlay",
     "yaxis3": {"overlaying": "y", "range": [0, 1], "visible": False, "fixedrange": True},
     "legend": {
         "orientation": "h",
@@ -162,7 +178,8 @@ def _rescale(data: Sequence[Trace], layout: Trace, letter: str, factor: float) -
         if trace[f"{letter}axis"] != letter:
             continue
         upright = trace["type"] == "bar" and (trace["orientation"] == "v") == (letter == "y")
-        for key in (letter, "base") if upright else (letter,):
+        along = trace["type"] == "bar" and not upright
+        for key in (letter, *(["base"] * upright), *(["width"] * along)):
             trace[key] = [None if one is None else factor * one for one in trace[key]]
     axis = layout[f"{letter}axis"]
     axis["range"] = scaled(axis["range"], axis["type"])
@@ -196,10 +213,18 @@ def _axis(ax: Axes, letter: str) -> Trace:
     if scale not in ("linear", "log"):
         raise UndrawableError(f"{scale} axis")
     low, high = ax.get_xlim() if letter == "x" else ax.get_ylim()
-    entry = _AXIS | {"title": {"text": label(axis.get_label_text())}} | _span(low, high, scale)
+    text = label(axis.get_label_text())
+    entry = _AXIS | {"title": {"text": text}} | _span(low, high, scale)
+    if letter == "y":
+        room = _FRAME / (_LETTER * max(len(plain(axis.get_label_text())), 1))
+        entry["title"] = {"text": text, "font": {"size": round(min(_TITLE, room), 1)}}
     if scale == "linear":
         entry["minexponent"] = 3
     locator, formatter = axis.get_major_locator(), axis.get_major_formatter()
+    if isinstance(locator, MaxNLocator) and isinstance(formatter, ScalarFormatter):
+        whole = [tick for tick in locator() if low <= tick <= high]
+        if whole and not np.mod(whole, 1.0).any() and high - low < _INTEGERS:
+            entry |= {"tickmode": "linear", "tick0": 0, "dtick": 1}
     if isinstance(locator, FixedLocator) and isinstance(formatter, FixedFormatter | FuncFormatter):
         places = [float(one) for one in locator()]
         entry["tickvals"] = places
@@ -208,12 +233,21 @@ def _axis(ax: Axes, letter: str) -> Trace:
 
 
 def _span(low: float, high: float, scale: str) -> Trace:
-    """Return what of an axis is seen, with numbers between decades if there are few of these."""
+    """Return what of an axis is seen.
+
+    Ticks are left to plotly, which finds others where a reader enlarges something. Of few decades
+    whole numbers are written: it writes 2 for 20 and for 0.2 alike where it writes powers of ten.
+    """
     if scale == "linear":
-        return {"type": scale, "range": [float(low), float(high)]}
+        shown: Trace = {"type": scale, "range": [float(low), float(high)]}
+        return shown | {"nticks": 0, "tickformat": ""}
     ends = log10(low), log10(high)
-    few = abs(ends[1] - ends[0]) < _FEW_DECADES
-    return {"type": scale, "range": [*ends], "dtick": "D2" if few else 1}
+    decades = abs(ends[1] - ends[0])
+    few = decades < _FEW_DECADES
+    # Plotly takes equal steps within a decade, and 1, 2 and 5 from 0.3 to 0.7 decades per tick.
+    most = _TICKS if decades < 1.0 else ceil(decades / 0.7) if few else int(decades / 0.75)
+    written = {"nticks": min(most, _TICKS), "tickformat": ".6~g" if few else ""}
+    return {"type": scale, "range": [*ends]} | written
 
 
 def _scales(ax: Axes, data: Sequence[Trace]) -> list[Trace]:
@@ -236,7 +270,7 @@ def _scales(ax: Axes, data: Sequence[Trace]) -> list[Trace]:
         spans[other] = (0.6 * low, 1.6 * high) if other == "log" else (0.0, 1.05 * high)
     buttons = []
     for name in ("log", "linear"):
-        shown = {"dtick": None} | _span(*spans[name], name)
+        shown = _span(*spans[name], name)
         given = {f"yaxis.{key}": value for key, value in shown.items()}
         buttons.append({"label": f"{name} scale", "method": "relayout", "args": [given]})
     return [_MENU | {"buttons": buttons, "active": int(now == "linear")}]

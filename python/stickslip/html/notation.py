@@ -26,12 +26,13 @@ def label(text: str) -> str:
 
     Names of anything may stand in it: everything that plotly would take for a tag is escaped.
     """
-    return _MATH.sub(lambda found: _formula(found[1]), escape(text, quote=False))
+    marked = _MATH.sub(lambda found: _formula(found[1]), escape(text, quote=False))
+    return marked.replace("\\$", "$").replace("\n", "<br>")
 
 
 def plain(text: str) -> str:
     """Return a text without formulas, for attributes that are read aloud."""
-    return _MATH.sub(lambda found: re.sub(r"[\\{}_]", "", found[1]), text)
+    return _MATH.sub(lambda found: re.sub(r"[\\{}_]", "", found[1]), text).replace("\\$", "$")
 
 
 def _formula(text: str) -> str:
@@ -73,9 +74,19 @@ def scaled(mapped: Any, values: Float) -> tuple[Float, dict[str, Any]]:
     shown = {"title": title, "thickness": 14, "outlinewidth": 0}
     # steps stand for cases, whose names only the ticks of the picture know
     if not straight or scale[0][1] == scale[1][1]:
-        ticks = np.array([tick for tick in bar.get_ticks() if low <= tick <= high], float)
-        shown["tickvals"] = ticks if straight else _normed(mapped, ticks)
-        shown["ticktext"] = [*map(label, axis.get_major_formatter().format_ticks(ticks))]
+        places: list[float] = []
+        texts: list[str] = []
+        for minor in (False, True):
+            formatter = axis.get_minor_formatter() if minor else axis.get_major_formatter()
+            ticks = [float(tick) for tick in bar.get_ticks(minor=minor) if low <= tick <= high]
+            named = zip(ticks, formatter.format_ticks(ticks), strict=True)
+            for tick, text in named:
+                if text:
+                    places.append(tick)
+                    texts.append(label(text))
+        ticks_at: Float = np.array(places, float)
+        shown["tickvals"] = ticks_at if straight else _normed(mapped, ticks_at)
+        shown["ticktext"] = texts
     return values, entries | {"colorbar": shown, "showscale": True}
 
 

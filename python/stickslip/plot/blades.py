@@ -19,6 +19,9 @@ from stickslip.plot.style import Looks
 from stickslip.results import ForcedResponse
 from stickslip.results.blades import response_of_disk
 
+_NAMED = 12
+"""Blades of which each has a name in the legend."""
+
 
 @figure
 def blade_bars(
@@ -90,7 +93,9 @@ def blade_curves(
     curves = [result.amplitude(f"{blade}.{dof}", options["measure"]) for blade in chosen]
     tuned = None if options["tuned"] is None else response_of_disk(options["tuned"])
     for blade, curve, colour in zip(chosen, curves, style.colours(len(chosen)), strict=True):
-        label = f"blade {blade}" if len(chosen) <= 12 else None
+        # Of many the ends of the colours are named.
+        named = len(chosen) <= _NAMED or blade in (chosen[0], chosen[-1])
+        label = f"blade {blade}" if named else None
         ax.plot(x, length.factor * curve, color=colour, lw=1.3, label=label, gid=style.RESPONSE)
     if tuned is not None:
         looks: Looks = {"color": "black", "lw": 1.4, "ls": style.STUCK, "gid": style.RESPONSE}

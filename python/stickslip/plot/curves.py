@@ -97,19 +97,25 @@ def slip(
         The contact, or one of its points. Default: all.
     """
     omega = style.omega_scale(options["omega_unit"], result)
-    contacts = range(len(result.model.contacts)) if contact is None else [contact]
+    contacts: Sequence[PointRef] = (
+        [contact] if contact is not None else contacts_with_states(result)
+    )
     lines = [line for one in contacts for line in _shares(result, one)]
     if not lines:
-        raise ModelError("contact: the model has none, so that nothing slips")
+        none = "the model has none, so that nothing slips"
+        springs = "those of the model are springs, which neither slip nor open"
+        raise ModelError(f"contact: {springs if result.model.contacts else none}")
     x = omega.factor * result.omega
+    said = "slipping share of the period"
     for (label, share, opens), colour in zip(lines, style.colours(len(lines)), strict=True):
         ax.plot(x, share, color=colour, lw=1.6, label=label)
         if (opens > 0.0).any():
             ax.plot(x, opens, color=colour, lw=1.1, ls="--", label=f"{label} open")
+            said = "share of the period that slips, dashed: is open"
     if x.min() < x.max():
         ax.set_xlim(x.min(), x.max())
     style.label_omega(ax, omega)
-    ax.set(ylim=(-0.03, 1.03), ylabel="slipping share of the period")
+    ax.set(ylim=(-0.03, 1.03), ylabel=said)
     if len(lines) == 1:
         ax.set_title(lines[0][0], fontsize="medium")
 
@@ -205,16 +211,14 @@ class _View:
         if not (error > _VISIBLE_ERROR * amplitude).any():
             return
         factor = self._factor(result.model)
-        self.ax.fill_between(
-            self.omega.factor * result.omega,
-            # A logarithmic axis has no place for zero.
-            factor * np.maximum(amplitude - error, 1e-3 * amplitude),
-            factor * (amplitude + error),
-            color=colour,
-            alpha=0.22,
-            lw=0.0,
-            label="estimated truncation error",
-        )
+        # A logarithmic axis has no place for zero.
+        lower = factor * np.maximum(amplitude - error, 1e-3 * amplitude)
+        upper, omega = factor * (amplitude + error), self.omega.factor * result.omega
+        looks: Looks = {"color": colour, "label": "estimated truncation error"}
+        if omega.size == 1:
+            self.ax.vlines(omega, lower, upper, alpha=0.4, lw=4.0, **looks)
+        else:
+            self.ax.fill_between(omega, lower, upper, alpha=0.22, lw=0.0, **looks)
 
     def shade_bounds(self, result: ForcedResponse, colour: Colour) -> None:
         """Shade what other residual tractions make of the curve, if that is known."""
@@ -325,6 +329,15 @@ def _shares(result: ForcedResponse, contact: PointRef) -> list[tuple[str, Float,
         return [(name, shares[0], opens[0])]
     names = (f"{name}[{point}]" for point, _ in enumerate(shares, only or 0))
     return list(zip(names, shares, opens, strict=True))
+
+
+def contacts_with_states(result: ForcedResponse) -> list[int]:
+    """Return the contacts that can slip, and those that open; springs do neither."""
+    return [
+        number
+        for number, one in enumerate(result.model.contacts)
+        if one.slips or (result.open_fraction(number) > 0.0).any()
+    ]
 
 
 def traits_of(results: Sequence[ForcedResponse]) -> list[str]:

@@ -132,7 +132,8 @@ def flutter_map(ax: Axes, /, result: FlutterMap, dof: str, **options: Unpack[Fra
         ax.set_yscale("log")
     else:
         ax.set_yticks([])
-        ax.set_xlim(*result.diameters[order[[0, -1]]])
+    first, last = result.diameters[order[[0, -1]]]
+    ax.set_xlim(first - 0.5, last + 0.5)
     if not (x.size or growing):
         ax.text(0.5, 0.5, "all waves decay", transform=ax.transAxes, ha="center", va="center")
     _over_diameters(ax, f"amplitude of {dof} [{length.label}]")
@@ -219,7 +220,7 @@ def _draw_diameters(
 
 
 def _over_diameters(ax: Axes, label: str) -> None:
-    ax.xaxis.set_major_locator(MaxNLocator(integer=True))
+    ax.xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
     ax.set(xlabel="nodal diameter", ylabel=label)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Unpack
+from typing import Any, Unpack
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -44,9 +44,9 @@ def fit(ax: Axes, /, result: Fit, **options: Unpack[FitOptions]) -> None:
         ax.plot(x, seen, **style.mark("o", 3.5, colour, "none"), label=result.names[number])
         if x.size > 1:
             line = [np.append(one, one[behind]) for one in (x, said)]
-            ax.plot(*line, color=colour, lw=1.3)
+            ax.plot(*line, color=colour, lw=1.3, label=_predicted(result, number))
         else:
-            ax.plot(x, said, **style.mark("_", 12, colour))
+            ax.plot(x, said, **style.mark("_", 12, colour), label=_predicted(result, number))
     if loops:
         ax.set(xlabel=f"displacement [{scale.label}]", ylabel="force [N]")
         return
@@ -85,9 +85,14 @@ def fit_backbone(ax: Axes, /, result: Fit, **options: Unpack[FitBackboneOptions]
         seen, said = factor * arrays.observed[own], factor * arrays.predicted[own]
         ax.plot(x, seen, **style.mark("o", 3.5, colour, "none"), label=result.names[number])
         found = arrays.solved[own]
-        ax.plot(x[found], said[found], color=colour, lw=1.3)
+        ax.plot(x[found], said[found], color=colour, lw=1.3, label=_predicted(result, number))
     below = "modal amplitude [m kg$^{1/2}$]" if modal else f"amplitude [{length.label}]"
     ax.set(xscale="log", xlabel=below, ylabel="damping ratio" if damping else omega.label)
+
+
+def _predicted(result: Fit, number: np.integer[Any]) -> str:
+    """Return the name of what is predicted of a test."""
+    return f"{result.names[number]}, predicted"
 
 
 @figure
@@ -98,9 +103,11 @@ def fit_residuals(ax: Axes, /, result: Fit, **options: Unpack[Drawing]) -> None:
         own = np.flatnonzero(result.of_test(number))
         ax.plot(own, result.residuals[own], **style.mark("o", 3, colour), label=names[number])
     ax.axhline(0.0, color=style.GREY, lw=0.9)
-    for side in (-2.0, 2.0):
-        ax.axhline(side * result.scatter, color=style.GREY, lw=0.9, ls=style.STUCK)
-    ax.set(xlabel="number", ylabel="prediction less measurement [standard deviations]")
+    for side, label in ((-2.0, "_"), (2.0, f"2 x scatter of {result.scatter:.3g}")):
+        level = side * result.scatter
+        ax.axhline(level, color=style.GREY, lw=0.9, ls=style.STUCK, label=label)
+    ax.set(xlabel="number of the measurement")
+    ax.set_ylabel("prediction less measurement [standard deviations]")
 
 
 @figure
@@ -128,4 +135,4 @@ def fit_intervals(ax: Axes, /, result: Fit, **options: Unpack[Drawing]) -> None:
             )
     ax.axvline(1.0, color=style.GREY, lw=0.9)
     ax.set_yticks(place, names)
-    ax.set(xlabel="interval over value", ylim=(len(names) - 0.5, -0.5))
+    ax.set(xlabel="interval relative to the value", ylim=(len(names) - 0.5, -0.5))

@@ -106,7 +106,7 @@ def names_of(branches: Sequence[NonlinearModes]) -> list[str]:
 def _damping(ax: Axes, one: NonlinearModes, colour: Colour, name: str) -> None:
     marker = "" if one.settings.whole else "o"
     ax.plot(one.amplitude, one.damping_ratio, color=colour, marker=marker, label=name)
-    ax.plot(one.amplitude, one.viscous_ratio, color=colour, ls=":")
+    ax.plot(one.amplitude, one.viscous_ratio, color=colour, ls=":", label=f"{name}, viscous part")
     _band(ax, one, one.damping_bounds, colour)
 
 

@@ -142,8 +142,10 @@ def _details(result: ForcedResponse, dofs: Dofs, output: OutputTable) -> Iterato
             yield partial(plots.blade_curves, result, dof, omega_unit=omega, length_unit=length)
     contacts = result.model.contacts
     if contacts:
+        from stickslip.plot.curves import contacts_with_states
+
         points = sum(contact.points for contact in contacts)
-        if points <= _SLIP_POINTS and result.omega.size > 1:
+        if points <= _SLIP_POINTS and result.omega.size > 1 and contacts_with_states(result):
             yield partial(plots.slip, result, omega_unit=omega)
         at = int(np.nanargmax(result.amplitude(dofs[0])))
         if any(not one.core_phases for one in contacts) and points <= _SLIP_POINTS:
