@@ -393,3 +393,34 @@ def test_rotor_speeds_of_a_disk(ax):
     hertz = np.array(ax.get_xlim()) * 2 / 60  # two periods of the force per turn
     np.testing.assert_allclose(above.get_xlim(), hertz, rtol=1e-12)
     assert above.get_xlabel() == "frequency [Hz]"
+
+
+@pytest.mark.parametrize("name", ["cost$x^{$", "$b$", "_tip", r"a\frac{$", "5 $"])
+def test_names_are_no_formulas_and_hide_nothing(name):
+    beam = snecma_beam().structure
+    structure = ss.Structure(beam.mass, beam.stiffness, beam.damping, ["damper", name, "mode"])
+    contacts = [
+        ss.Jenkins("damper", stiffness=2.4e7, slip_force=246.0, name=name),
+        ss.Jenkins("mode", stiffness=2.4e5, slip_force=2.0),
+    ]
+    model = ss.Model(structure, contacts, [ss.Force(name, 20.0)])
+    frf = ss.forced_response(model, np.linspace(150.0, 250.0, 9), 3)
+    moved = ss.transient(model, 170.0, 3)
+    drawn = [
+        frf.plot(name),
+        ss.plot.slip(frf),
+        ss.plot.waveform(frf, [name, "damper"], 4),
+        ss.plot.hysteresis(frf, 0, 4),
+        ss.plot.history(moved, name),
+        ss.plot.contact_history(moved, name),
+    ]
+    try:
+        for ax in drawn:
+            ax.figure.draw_without_rendering()
+            texts = [ax.get_ylabel(), ax.get_title()]
+            if ax.get_legend() is not None:
+                texts += [text.get_text() for text in ax.get_legend().get_texts()]
+            shown = [text.replace(r"\$", "$") for text in texts]
+            assert any(name in text for text in shown)
+    finally:
+        plt.close("all")

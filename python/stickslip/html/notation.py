@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from matplotlib import colors
 
+from stickslip.plot.style import UNSEEN
 from stickslip.results.arrays import Float
 
 _STEPS = 32
@@ -27,12 +28,13 @@ def label(text: str) -> str:
     Names of anything may stand in it: everything that plotly would take for a tag is escaped.
     """
     marked = _MATH.sub(lambda found: _formula(found[1]), escape(text, quote=False))
-    return marked.replace("\\$", "$").replace("\n", "<br>")
+    return marked.replace("\\$", "$").replace("\n", "<br>").replace(UNSEEN, "")
 
 
 def plain(text: str) -> str:
     """Return a text without formulas, for attributes that are read aloud."""
-    return _MATH.sub(lambda found: re.sub(r"[\\{}_]", "", found[1]), text).replace("\\$", "$")
+    read = _MATH.sub(lambda found: re.sub(r"[\\{}_]", "", found[1]), text)
+    return read.replace("\\$", "$").replace(UNSEEN, "")
 
 
 def _formula(text: str) -> str:

@@ -69,7 +69,9 @@ def lines(ax: Axes, /, result: MotionClass, dof: str, **options: Unpack[LineOpti
     found = result.lines(dof, options["most"])
     scale = 2.0 * np.pi * omega.factor
     shown = density > 0.0
-    ax.semilogy(scale * frequency[shown], density[shown], lw=0.9, color=style.BLUE, label=dof)
+    ax.semilogy(
+        scale * frequency[shown], density[shown], lw=0.9, color=style.BLUE, label=style.named(dof)
+    )
     if found:
         where = np.array([line.frequency for line in found])
         height = np.interp(where, frequency, density)
@@ -109,4 +111,4 @@ def _edges(centres: Float) -> Float:
 
 
 def _named(axis: str | int) -> str:
-    return f"start of mode {axis}" if isinstance(axis, int) else f"start of {axis}"
+    return f"start of mode {axis}" if isinstance(axis, int) else f"start of {style.named(axis)}"

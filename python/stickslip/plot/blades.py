@@ -57,7 +57,7 @@ def blade_bars(
     ax.bar(blades, length.factor * heights, width=0.8, color=style.BLUE, label="mistuned")
     ax.xaxis.set_major_locator(MaxNLocator(integer=True))
     ax.set_xlim(-0.7, result.model.sectors - 0.3)  # type: ignore[attr-defined]
-    ax.set(xlabel="blade", ylabel=f"amplitude of {dof} [{length.label}]")
+    ax.set(xlabel="blade", ylabel=f"amplitude of {style.named(dof)} [{length.label}]")
     ax.set_title(title, fontsize="medium")
 
 
@@ -102,5 +102,5 @@ def blade_curves(
         reference = length.factor * tuned.amplitude(dof, options["measure"])
         ax.plot(omega.factor * tuned.omega, reference, label="tuned", **looks)
     style.label_omega(ax, omega)
-    ax.set(ylabel=f"amplitude of {dof} [{length.label}]")
+    ax.set(ylabel=f"amplitude of {style.named(dof)} [{length.label}]")
     style.fit(ax, log=options["log"])

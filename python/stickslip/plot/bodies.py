@@ -58,7 +58,7 @@ def damper_drawing(ax: Axes, /, damper: Damper, **options: Unpack[Drawing]) -> N
             ax.plot(*start, "+", color=style.ORANGE)
         mass = f"\n{body.mass:.3g} kg" if isinstance(body, RigidBody) else ""
         place = _at(shifts[name] - [0.0, 0.4 * size])
-        ax.annotate(f"{name}{mass}", place, ha="center", va="center")
+        ax.annotate(f"{style.named(name)}{mass}", place, ha="center", va="center")
     ax.set_aspect("equal")
     ax.margins(0.3, 0.15)  # what stands beside a face counts in no limit
     if measured:
@@ -115,7 +115,7 @@ def _face(
     label = places[len(places) // 2][0] + 0.6 * size * normal
     if face.to not in sides:  # between two bodies: above them
         label = ends[0] + np.array([0.0, 0.9 * size])
-    said = f"{name}, µ = {face.friction:g}"
+    said = f"{style.named(name)}, µ = {face.friction:g}"
     ax.annotate(said, _at(label), ha="center", va="center", color=colour)
     return ends
 

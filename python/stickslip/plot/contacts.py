@@ -46,8 +46,8 @@ def waveform(
     waves = [result.waveform(one, index, options["samples"]) for one in dofs]
     time = np.linspace(0.0, 1.0, options["samples"] + 1)
     for one, wave, colour in zip(dofs, waves, style.colours(len(dofs)), strict=True):
-        ax.plot(time, length.factor * _closed(wave), color=colour, lw=1.6, label=one)
-    of = f" of {dofs[0]}" if len(dofs) == 1 else ""
+        ax.plot(time, length.factor * _closed(wave), color=colour, lw=1.6, label=style.named(one))
+    of = f" of {style.named(dofs[0])}" if len(dofs) == 1 else ""
     ax.set(xlim=(0.0, 1.0), xlabel="time over period t/T")
     ax.set_ylabel(f"displacement{of} [{length.label}]")
     ax.set_title(at(result, index), fontsize="medium")
@@ -87,7 +87,9 @@ def hysteresis(
     if result.model.contacts[number].core_phases:
         _draw_slip_limits(ax, result.model.contacts[number].limits, point)
     ax.set(xlabel=f"relative displacement u [{length.label}]", ylabel="contact force f [N]")
-    title = result.model.contact_names[number] + ("" if point is None else f"[{point}]")
+    title = style.named(result.model.contact_names[number]) + (
+        "" if point is None else f"[{point}]"
+    )
     if len(indices) == 1:
         title += f" at {at(result, indices[0])}"
     if len(loops) == 1:
@@ -125,7 +127,9 @@ def _traction(
                 ax.plot(circle.real, circle.imag, color=style.GREY, lw=0.9, ls=":", zorder=1.5)
     ax.set_aspect("equal", adjustable="datalim")
     ax.set(xlabel="traction t1 [N]", ylabel="traction t2 [N]")
-    title = result.model.contact_names[number] + ("" if point is None else f"[{point}]")
+    title = style.named(result.model.contact_names[number]) + (
+        "" if point is None else f"[{point}]"
+    )
     ax.set_title(title, fontsize="medium")
 
 
@@ -152,7 +156,7 @@ def events(ax: Axes, /, result: ForcedResponse, index: int, **options: Unpack[Dr
             strip = [(begin, length)], (row - 0.35, 0.7)
             ax.broken_barh(*strip, color=colour, lw=0.0, label=named)
     ax.set(xlim=(0.0, 1.0), ylim=(len(names) - 0.4, -0.6), xlabel="time over period t/T")
-    ax.set_yticks(range(len(names)), names)
+    ax.set_yticks(range(len(names)), [*map(style.named, names)])
     ax.set_title(f"{at(result, index)}: {count} events per period", fontsize="medium")
 
 
@@ -196,14 +200,14 @@ def contact_forces(
         for start, length in zip(states.start[slips], states.length[slips], strict=True):
             ax.axvspan(start, start + length, color=style.ORANGE, alpha=0.25, lw=0.0)
         dof = one.dofs[point] if len(one.dofs) == one.points else " - ".join(map(str, one.dofs))
-        ax.set_ylabel(f"{point}: {dof or 'ground'}\nforce [N]")
+        ax.set_ylabel(f"{point}: {style.named(dof or 'ground')}\nforce [N]")
     if one.points > 1:
         whole = forces.sum(axis=1)
         axes[-1].plot(time, whole, color=style.BLUE, lw=1.6)
         # The rounding of a sum that vanishes is no motion.
         edge = max(0.05 * float(np.abs(forces).max()), 1.05 * float(np.abs(whole).max()))
         axes[-1].set(ylim=(-edge, edge), ylabel="sum\nforce [N]")
-    _finish(axes, f"{result.model.contact_names[number]}, {at(result, index)}", 2)
+    _finish(axes, f"{style.named(result.model.contact_names[number])}, {at(result, index)}", 2)
     return axes
 
 
@@ -242,7 +246,11 @@ def _node_forces(result: ForcedResponse, number: int, index: int, count: int) ->
             edge = ax.get_xaxis_transform()
             ax.fill_between(time, 0.0, 1.0, states[:, node] == state, transform=edge, **shade)
         ax.set_ylabel(f"node {node}\nforce [N]" if one.points > 1 else "force [N]")
-    _finish(axes, f"{result.model.contact_names[number]}, {at(result, index)}", len(colours))
+    _finish(
+        axes,
+        f"{style.named(result.model.contact_names[number])}, {at(result, index)}",
+        len(colours),
+    )
     return axes
 
 

@@ -147,7 +147,9 @@ class _View:
         """Write what the axes show."""
         per_force = " per force" if self.per_force else ""
         style.label_omega(self.ax, self.omega)
-        self.ax.set_ylabel(f"{_MEASURE[self.measure]} of {self.dof}{per_force} [{self.unit}]")
+        self.ax.set_ylabel(
+            f"{_MEASURE[self.measure]} of {style.named(self.dof)}{per_force} [{self.unit}]"
+        )
 
     def draw(self, result: ForcedResponse, colour: Colour, label: str) -> None:
         """Draw the curve, and crosses on the axis where there is no solution.
@@ -324,7 +326,7 @@ def _shares(result: ForcedResponse, contact: PointRef) -> list[tuple[str, Float,
         of(contact).reshape(result.omega.size, -1).T
         for of in (result.slip_fraction, result.open_fraction)
     )
-    name = result.model.contact_names[number]
+    name = style.named(result.model.contact_names[number])
     if only is None and len(shares) == 1:
         return [(name, shares[0], opens[0])]
     names = (f"{name}[{point}]" for point, _ in enumerate(shares, only or 0))
@@ -362,7 +364,7 @@ def _traits(result: ForcedResponse) -> dict[str, str]:
     if isinstance(disk, BladedDisk):
         traits["EO"] = f"EO {disk.engine_order}"
     for name, contact in zip(result.model.contact_names, result.model.contacts, strict=True):
-        of = f" ({name})" if len(result.model.contacts) > 1 else ""
+        of = f" ({style.named(name)})" if len(result.model.contacts) > 1 else ""
         parameters = contact.adjustable()
         for key, symbol, unit in _TRAITS:
             if key in parameters and key not in contact.factors:

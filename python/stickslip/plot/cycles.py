@@ -56,7 +56,7 @@ def limit_cycles(
     for single in (False, True):
         of = [one.stability for one in branches if (one.settings.values is not None) == single]
         style.name_states(ax, of, single=single)
-    ax.set(yscale="log", ylabel=f"amplitude of {dof} [{length.label}]")
+    ax.set(yscale="log", ylabel=f"amplitude of {style.named(dof)} [{length.label}]")
     if below is not None:
         below.set_ylabel(omega.label)
         style.bare(below)

@@ -31,7 +31,7 @@ def damper(
         The axes of the amplitude.
     """
     curves = several(DamperCurve, results, lambda one: one.parameter)
-    names = checked_labels(options["labels"], [one.settings.dof for one in curves])
+    names = checked_labels(options["labels"], [style.named(one.settings.dof) for one in curves])
     omega = style.omega_scale(options["omega_unit"], curves)
     length = style.LENGTH[options["length_unit"]]
     views = [_view(curve, length, per_force=options["normalise"] == "force") for curve in curves]

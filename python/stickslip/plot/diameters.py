@@ -136,7 +136,7 @@ def flutter_map(ax: Axes, /, result: FlutterMap, dof: str, **options: Unpack[Fra
     ax.set_xlim(first - 0.5, last + 0.5)
     if not (x.size or growing):
         ax.text(0.5, 0.5, "all waves decay", transform=ax.transAxes, ha="center", va="center")
-    _over_diameters(ax, f"amplitude of {dof} [{length.label}]")
+    _over_diameters(ax, f"amplitude of {style.named(dof)} [{length.label}]")
 
 
 @figure
@@ -169,7 +169,9 @@ def aerodynamic_limits(
     shade = ax.pcolormesh(
         x, 100.0 * ratios, size.T, shading="nearest", cmap="viridis", norm=colour, rasterized=True
     )
-    bar = ax.figure.colorbar(shade, ax=ax, label=f"amplitude of {dof} [{length.label}]")
+    bar = ax.figure.colorbar(
+        shade, ax=ax, label=f"amplitude of {style.named(dof)} [{length.label}]"
+    )
     if colour is not None:
         style.number_bar(bar.ax)
     ax.plot(x, 100.0 * held, color="crimson", lw=1.2, label="friction holds above")

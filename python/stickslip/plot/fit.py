@@ -41,7 +41,9 @@ def fit(ax: Axes, /, result: Fit, **options: Unpack[FitOptions]) -> None:
         else:
             x, seen, said = x * omega.factor, seen * scale.factor, said * scale.factor
             behind = slice(0, 0)
-        ax.plot(x, seen, **style.mark("o", 3.5, colour, "none"), label=result.names[number])
+        ax.plot(
+            x, seen, **style.mark("o", 3.5, colour, "none"), label=style.named(result.names[number])
+        )
         if x.size > 1:
             line = [np.append(one, one[behind]) for one in (x, said)]
             ax.plot(*line, color=colour, lw=1.3, label=_predicted(result, number))
@@ -83,7 +85,9 @@ def fit_backbone(ax: Axes, /, result: Fit, **options: Unpack[FitBackboneOptions]
         own = own[np.argsort(arrays.abscissa[own], kind="stable")]
         x = arrays.abscissa[own] * (1.0 if modal else length.factor)
         seen, said = factor * arrays.observed[own], factor * arrays.predicted[own]
-        ax.plot(x, seen, **style.mark("o", 3.5, colour, "none"), label=result.names[number])
+        ax.plot(
+            x, seen, **style.mark("o", 3.5, colour, "none"), label=style.named(result.names[number])
+        )
         found = arrays.solved[own]
         ax.plot(x[found], said[found], color=colour, lw=1.3, label=_predicted(result, number))
     below = "modal amplitude [m kg$^{1/2}$]" if modal else f"amplitude [{length.label}]"
@@ -92,7 +96,7 @@ def fit_backbone(ax: Axes, /, result: Fit, **options: Unpack[FitBackboneOptions]
 
 def _predicted(result: Fit, number: np.integer[Any]) -> str:
     """Return the name of what is predicted of a test."""
-    return f"{result.names[number]}, predicted"
+    return f"{style.named(result.names[number])}, predicted"
 
 
 @figure
@@ -101,7 +105,12 @@ def fit_residuals(ax: Axes, /, result: Fit, **options: Unpack[Drawing]) -> None:
     names = result.names
     for number, colour in zip(range(len(names)), style.colours(len(names)), strict=True):
         own = np.flatnonzero(result.of_test(number))
-        ax.plot(own, result.residuals[own], **style.mark("o", 3, colour), label=names[number])
+        ax.plot(
+            own,
+            result.residuals[own],
+            **style.mark("o", 3, colour),
+            label=style.named(names[number]),
+        )
     ax.axhline(0.0, color=style.GREY, lw=0.9)
     for side, label in ((-2.0, "_"), (2.0, f"2 x scatter of {result.scatter:.3g}")):
         level = side * result.scatter
@@ -134,5 +143,5 @@ def fit_intervals(ax: Axes, /, result: Fit, **options: Unpack[Drawing]) -> None:
                 label=label,
             )
     ax.axvline(1.0, color=style.GREY, lw=0.9)
-    ax.set_yticks(place, names)
+    ax.set_yticks(place, [*map(style.named, names)])
     ax.set(xlabel="interval relative to the value", ylim=(len(names) - 0.5, -0.5))

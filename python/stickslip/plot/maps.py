@@ -22,7 +22,7 @@ def design_map(ax: Axes, /, result: DesignMap, **options: Unpack[Frame]) -> None
     scale = style.LENGTH[options["length_unit"]]
     if options["length_unit"] == "auto":
         scale = style.prefix_of(float(np.nanmax(result.amplitude, initial=0.0)), "m")
-    label = f"peak of {result.dof} [{scale.label}]"
+    label = f"peak of {style.named(result.dof)} [{scale.label}]"
     if 1 in result.amplitude.shape:
         _curve(ax, result, scale.factor, label)
         return

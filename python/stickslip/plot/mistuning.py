@@ -64,7 +64,7 @@ def distribution(
     low, high = _height([0.7 * ranks[0], 1.0 - 0.5 * (1.0 - ranks[-1])])
     if percentile is not None:
         high = max(high, float(_height(0.5 + percentile / 200.0)))
-    ax.set(ylim=(low, high), xlabel=f"amplification factor of {dof}")
+    ax.set(ylim=(low, high), xlabel=f"amplification factor of {style.named(dof)}")
     ax.set_ylabel("share of disks that do not exceed it")
     ax.set_title(title, fontsize="medium")
 
@@ -107,7 +107,7 @@ def amplification(
     if against == "coupling" and (below > 0.0).all() and below.size > 1:
         ax.set_xscale("log")
     ax.axhline(1.0, color=style.GREY, lw=1.0, ls=style.STUCK, label="tuned")
-    ax.set(xlabel=label, ylabel=f"amplification factor of {dof}")
+    ax.set(xlabel=label, ylabel=f"amplification factor of {style.named(dof)}")
 
 
 def _trend(

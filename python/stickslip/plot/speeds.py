@@ -41,7 +41,7 @@ def speed_response(
     ax.set_yscale("log" if options["log"] else "linear")
     orders = {one.engine_order for one in listed}
     style.label_omega(ax, style.rotor_speed(orders.pop() if len(orders) == 1 else None))
-    ax.set_ylabel(f"half peak-to-peak of {listed[0].dof} [{length.label}]")
+    ax.set_ylabel(f"half peak-to-peak of {style.named(listed[0].dof)} [{length.label}]")
 
 
 def _mark_resonances(

@@ -26,7 +26,7 @@ def static_forces(ax: Axes, /, result: StaticResponse, **options: Unpack[Drawing
         tractions.extend(np.linalg.norm(tangential, axis=1).tolist())
         allowed.extend(contact.friction_limit(forces).tolist())
         many = range(contact.points) if contact.points > 1 else [""]
-        names.extend(f"{name} {point}".rstrip() for point in many)
+        names.extend(f"{style.named(name)} {point}".rstrip() for point in many)
     if not names:
         raise ModelError("static_forces: the model has no contact")
     place = np.arange(len(names))

@@ -35,6 +35,9 @@ Looks: TypeAlias = dict[str, Any]
 RESPONSE, LIMIT = "response", "limit"
 """Group names (gid) by which a figure finds its own lines again."""
 
+UNSEEN = "\u200b"
+"""A space without a width, before names that begin with an underscore."""
+
 GREY, BLUE, ORANGE = "0.45", "#31688e", "#d8863b"
 STUCK = (0, (6, 2))
 FREE = (0, (1, 1.5))
@@ -144,6 +147,16 @@ def colours(count: int) -> list[tuple[float, float, float, float]]:
     """Return colours in a perceptual sequence, from dark to light, the palest left out."""
     positions = np.linspace(0.05, 0.85, count) if count > 1 else np.array([0.25])
     return [colormaps["viridis"](float(position)) for position in positions]
+
+
+def named(text: str) -> str:
+    """Return a name of the user as Matplotlib is to write it.
+
+    It takes what stands between dollars for a formula, and hides what begins with an underscore
+    from legends.
+    """
+    text = text.replace("$", r"\$")
+    return f"{UNSEEN}{text}" if text.startswith("_") else text
 
 
 def mark(marker: str, size: float, edge: Colour, fill: Colour = "white") -> Looks:

@@ -29,9 +29,13 @@ def history(
     part = _last(result, options["last"])
     waves = [result.displacement(one)[part] for one in dofs]
     for one, wave, colour in zip(dofs, waves, style.colours(len(dofs)), strict=True):
-        ax.plot(result.time[part], length.factor * wave, color=colour, lw=1.0, label=one)
+        ax.plot(
+            result.time[part], length.factor * wave, color=colour, lw=1.0, label=style.named(one)
+        )
     _over_time(ax, result, part)
-    ax.set_ylabel(f"displacement{f' of {dofs[0]}' if len(dofs) == 1 else ''} [{length.label}]")
+    ax.set_ylabel(
+        f"displacement{f' of {style.named(dofs[0])}' if len(dofs) == 1 else ''} [{length.label}]"
+    )
 
 
 @figure
@@ -42,7 +46,7 @@ def contact_history(
     part = _last(result, options["last"])
     forces = result.contact_force(contact).reshape(result.time.size, -1)[part]
     number, only = result.locate(contact)
-    name, single = result.model.contact_names[number], forces.shape[1] == 1
+    name, single = style.named(result.model.contact_names[number]), forces.shape[1] == 1
     for point, colour in enumerate(style.colours(forces.shape[1])):
         label = name if single and only is None else f"{name}[{point + (only or 0)}]"
         ax.plot(result.time[part], forces[:, point], color=colour, lw=1.0, label=label)
@@ -117,7 +121,7 @@ def spectrum(ax: Axes, /, result: Transient, dof: str, **options: Unpack[Spectru
     ax.set_xlim(0.0, end + fundamental)
     if top > 0.0:
         ax.set(yscale="log", ylim=(1e-16 * top, 4.0 * top))
-    ax.set(xlabel=omega.label, ylabel=f"power spectral density of {dof} [m²/Hz]")
+    ax.set(xlabel=omega.label, ylabel=f"power spectral density of {style.named(dof)} [m²/Hz]")
 
 
 def _last(result: Transient, last: int | None) -> slice:
@@ -137,4 +141,7 @@ def _over_time(ax: Axes, result: Transient, part: slice) -> None:
 
 
 def _phase_axes(ax: Axes, dof: str, unit: str) -> None:
-    ax.set(xlabel=f"displacement of {dof} [{unit}]", ylabel=f"velocity of {dof} [{unit}/s]")
+    ax.set(
+        xlabel=f"displacement of {style.named(dof)} [{unit}]",
+        ylabel=f"velocity of {style.named(dof)} [{unit}/s]",
+    )

@@ -54,7 +54,9 @@ def uncertainty_distribution(
         label = f"{q:g} %: {value:.4g} {shown.label}".rstrip() + f" ({low:.4g} to {high:.4g})"
         (mark,) = ax.plot([found.value], [q / 100.0], ls="", marker="D", ms=5, label=label)
         ax.errorbar([found.value], [q / 100.0], xerr=bars, color=mark.get_color(), capsize=3)
-    ax.set(xlabel=f"{number} [{unit}]", ylabel="share of the samples", ylim=(0.0, 1.02))
+    ax.set(
+        xlabel=f"{style.named(number)} [{unit}]", ylabel="share of the samples", ylim=(0.0, 1.02)
+    )
     failed = f", {result.failed} failed" if result.failed else ""
     ax.set_title(f"{values.size} samples{failed}", fontsize="medium")
 
@@ -83,9 +85,12 @@ def sobol_indices(
         at = place + side * _BAR
         ax.bar(at, value, _BAR, color=colour, label=label)
         ax.errorbar(at, value, yerr=bars, ls="", color="0.2", capsize=3)
-    ax.set_xticks(place, [name.replace("_", "_\n") for name in names])
+    ax.set_xticks(place, [style.named(name.replace("_", "_\n")) for name in names])
     ax.set(ylabel="share of the variance", ylim=(0.0, None))
-    ax.set_title(f"{number}: surrogate misses {found.error:.2g} of the variance", fontsize="medium")
+    ax.set_title(
+        f"{style.named(number)}: surrogate misses {found.error:.2g} of the variance",
+        fontsize="medium",
+    )
 
 
 @figure

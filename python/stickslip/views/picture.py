@@ -67,17 +67,20 @@ def labelled(
     panels: Iterable[Callable[..., object]], names: Sequence[str], traits: Sequence[str]
 ) -> Panels:
     """Name the curves of panels: by their results, each with what distinguishes it, if anything."""
-    labels = list(names)
+    from stickslip.plot.style import named
+
+    labels = [*map(named, names)]
     if len(set(traits)) > 1:
-        labels = [f"{name}: {trait}" for name, trait in zip(names, traits, strict=True)]
+        labels = [f"{label}: {trait}" for label, trait in zip(labels, traits, strict=True)]
     return [partial(panel, labels=labels) for panel in panels]
 
 
 def titled(panel: Panel, name: str) -> Panel:
     """Put the name of a result over its panel."""
+    from stickslip.plot.style import named
 
     def drawn(*, ax: Axes) -> None:
         panel(ax=ax)
-        ax.set_title(": ".join(filter(None, [name, ax.get_title()])), fontsize="medium")
+        ax.set_title(": ".join(filter(None, [named(name), ax.get_title()])), fontsize="medium")
 
     return drawn
