@@ -335,3 +335,37 @@ def test_a_motion_without_a_picture_costs_no_other_result(results, tmp_path):
     page = Page(tmp_path / "b.html")
     assert "No figure: motion: one that decays or grows for ever has no picture" in page.text
     assert len(page.figures) == 1
+
+
+def test_a_part_of_a_run_says_that_it_is_one(results, tmp_path):
+    def stop(share):
+        if share > 0.2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(ss.Interrupted) as stopped:
+        ss.damper_curve(BEAM, slip_force=np.geomspace(1.0, 1e4, 300), dof="tip", progress=stop)
+    with pytest.raises(ss.Interrupted) as early:
+        ss.transient(BEAM, 170.0, 4000, progress=stop)
+    ss.report([stopped.value.result, early.value.result], tmp_path / "a.html")
+    page = Page(tmp_path / "a.html")
+    assert page.texts.count("The run was interrupted: this is what it had computed.") == 2
+    assert "interrupted, interrupted" not in page.text
+    assert "Run the analysis again for what is missing." in page.text
+
+
+def test_what_an_optimum_changes_is_told_from_what_was_given(results, tmp_path):
+    ss.report(results["optimum"], tmp_path / "a.html")
+    page = Page(tmp_path / "a.html")
+    given = "jenkins: jenkins at damper, stiffness 2.4e+07, slip_force 246.048"
+    assert page.texts[page.texts.index(given) - 1] == "contact as given"
+
+
+def test_effort_names_everything_once(results, tmp_path):
+    ss.report(results["low"], tmp_path / "a.html")
+    assert Page(tmp_path / "a.html").texts.count("iterations") == 1
+
+
+def test_what_is_in_doubt_is_said_once(results, tmp_path):
+    (doubt,) = (one.text for one in results["low"].diagnostics if one.severity == "caution")
+    ss.report(results["low"], tmp_path / "a.html")
+    assert Page(tmp_path / "a.html").texts.count(doubt) == 1

@@ -210,7 +210,7 @@ TEXTS = {
     "step, too much to be followed well; take {needed} steps per period.",
     "no-tolerance": "No tolerance was given, so that the last period need not be a steady one; see "
     "change.",
-    "forces-left-out": "The {forces} force(s) of the model were left out: the motion is free.",
+    "forces-left-out": "Forces of the model, {forces} in all, were left out: the motion is free.",
     "criterion": "A motion counts as settled at a closing error of {tolerance:g} that is falling, "
     "over 32 periods, and was followed over {periods} periods of the lowest stuck mode at most.",
     "modes": "Modes are those of the structure with all contacts stuck, told apart by kinetic "
@@ -262,8 +262,8 @@ TEXTS = {
     "its own.",
     "stability-undecided/left out": "Stability is not decided: it was left out.",
     "stability-undecided": "{points} points have no multipliers: their stability is not decided.",
-    "stability-undecided/points": "The stability of {points} points is not decided.",
-    "stability-unknown": "The stability of {count} values is not decided.",
+    "stability-undecided/points": "Points whose stability is not decided: {points}.",
+    "stability-unknown": "Values whose stability is not decided: {count}.",
     "multipliers": "{points} points have no exact orbit nearby at their {_followed}: their "
     "multipliers are those of the exact flow along the harmonic balance.",
     "branch-turned-back": "Stalled: at {_followed} = {value:.6g} the continuation came back to "

@@ -93,15 +93,16 @@ def _group(
     sections = []
     for entry in members:
         result = entry.result
+        missing, doubted = failures(result), cautions(result)
         section = {
             "anchor": entry.anchor,
             "name": entry.name,
-            "failures": failures(result),
-            "cautions": cautions(result),
+            "failures": missing,
+            "cautions": doubted,
             "facts": [
                 row for row in view.facts(result) if row[0] != "assumed" and row not in known
             ],
-            "assumptions": result.assumptions,
+            "assumptions": [one for one in result.assumptions if one not in (*missing, *doubted)],
             "figures": _figures(view.details(result, shown, output)),
             "settings": _settings(result),
             "effort": _effort(result),
@@ -142,7 +143,9 @@ def _overview(entries: Sequence[Entry]) -> Table:
     rows = []
     for entry in entries:
         result = entry.result
-        status = _status(result) + ", interrupted" * result.interrupted
+        status = _status(result)
+        if result.interrupted and "interrupted" not in status:
+            status += ", interrupted"
         time = f"{result.timings['total']:.3g}" if "total" in result.timings else ""
         rows.append((entry.name, (_kind(result), status, f"{len(result.assumptions)}", time)))
     return tabulated("result", ("kind", "status"), ("assumptions", "computed in [s]"), (), rows)
@@ -181,12 +184,12 @@ def _text(value: object) -> str:
 
 def _effort(result: Any) -> list[Row]:
     rows = [(f"{stage.replace('_', ' ')} [s]", f"{s:.3g}") for stage, s in result.timings.items()]
-    rows += [(name.replace("_", " "), f"{count}") for name, count in result.counters.items()]
+    counters = {name.replace("_", " "): f"{count}" for name, count in result.counters.items()}
     iterations = getattr(result, "iterations", None)
     if isinstance(iterations, np.ndarray) and iterations.size:
         told = f"{iterations.sum()} in all, at most {iterations.max()} at a point"
-        rows.append(("iterations", told))
-    return rows
+        counters["iterations"] = told
+    return [*rows, *counters.items()]
 
 
 def _provenance(entry: Entry) -> list[Row]:

@@ -56,7 +56,7 @@ class Status(Ending):
     NOT_COMPUTED = (
         "not computed",
         "The run was interrupted before this point was reached. "
-        "Run the analysis again for the missing omega.",
+        "Run the analysis again for what is missing.",
     )
     HARMONICS_LIMIT = (
         "harmonics limit",

@@ -11,7 +11,7 @@ from stickslip.results.damper_curve import DamperCurve
 from stickslip.results.optimal_damper import OptimalDamper
 from stickslip.views.kinds import RPM, Dofs, Rows, View
 from stickslip.views.picture import Panels
-from stickslip.views.tables import Row, assumed, bound_rows, counted
+from stickslip.views.tables import Row, assumed, bound_rows, counted, model_rows
 
 if TYPE_CHECKING:
     from stickslip.study.tables import OutputTable
@@ -88,7 +88,13 @@ class OptimumView(View[OptimalDamper]):
 
     def facts(self, result: OptimalDamper) -> list[Row]:
         """Say what is said of the curve, and what the optimum assumes beside."""
-        of_curve = DamperView().facts(result.curve)
+        best = model_rows(result.model)
+        # the optimum is that of a model with another value than the given one
+        of_curve = [
+            (f"{name} as given", said) if name == "contact" and (name, said) not in best else row
+            for row in DamperView().facts(result.curve)
+            for name, said in [row]
+        ]
         return of_curve + [row for row in assumed(result) if row not in of_curve]
 
     def failures(self, result: OptimalDamper) -> list[str]:

@@ -36,7 +36,9 @@ class FlutterView(View[FlutterMap]):
         """Return the rows, by rising amplitude in a wave."""
         arrays, columns = result.arrays, [result._column(dof) for dof in dofs]
         for wave in result.order.tolist():
-            rest = f"{arrays.rest_ratio[wave]:.6g}", f"{arrays.rest_aerodynamic_ratio[wave]:.6g}"
+            # zero has no sign
+            ratios = arrays.rest_ratio[wave] + 0.0, arrays.rest_aerodynamic_ratio[wave] + 0.0
+            rest = tuple(f"{ratio:.6g}" for ratio in ratios)
             name, fate = f"{result.signed(wave):+d}", result.fate(wave)
             found = np.flatnonzero(arrays.cycle_wave == wave)
             for index, one in zip(found.tolist(), result.cycles(wave), strict=True):

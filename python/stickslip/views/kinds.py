@@ -184,7 +184,8 @@ def failures(result: Result) -> list[str]:
 
 def cautions(result: Result) -> list[str]:
     """Word what puts the numbers of a result in doubt, one line each."""
-    return _texts(result, Severity.CAUTION)
+    part = ["The run was interrupted: this is what it had computed."] * result.interrupted
+    return part + _texts(result, Severity.CAUTION)
 
 
 def _texts(result: Result, severity: Severity) -> list[str]:
