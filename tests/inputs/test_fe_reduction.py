@@ -295,3 +295,25 @@ def test_stresses_of_the_coarse_blade_reach_paraview(blade, tmp_path, monkeypatc
         stress.Blade(**stress.COARSE).tip(blade[1].solid)
     ]
     assert tip[1] == pytest.approx(found["tip_m"], rel=1e-2)
+
+
+@pytest.mark.parametrize("keep", [{"modes": 448}, {"omega": 1e4}])
+def test_all_modes_of_many_rows_are_kept(keep):
+    M, K = chain(450)
+    reduced = ss.craig_bampton(M, K, [449, 4], **keep)
+    assert reduced.omega.size == 448
+    full = np.sqrt(scipy.linalg.eigh(K.toarray(), M.toarray(), eigvals_only=True))
+    own = np.sqrt(scipy.linalg.eigh(reduced.stiffness, reduced.mass, eigvals_only=True))
+    np.testing.assert_allclose(own, full, rtol=1e-9)
+
+
+def test_modes_that_have_no_inertia_are_no_modes():
+    M, K = chain(450)
+    # each two of the last rows move with the inertia of one
+    M = M.tolil()
+    for row in range(100, 440, 2):
+        M[row, row] = M[row + 1, row + 1] = M[row, row + 1] = M[row + 1, row] = 1.0
+    M = M.tocsc()
+    assert ss.craig_bampton(M, K, [449, 4], modes=278).omega.size == 278
+    with pytest.raises(ModelError, match="modes: 279"):
+        ss.craig_bampton(M, K, [449, 4], modes=279)

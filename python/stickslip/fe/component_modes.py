@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -107,7 +107,7 @@ def craig_bampton(
     K_ii, M_ii = K[inner][:, inner].tocsc(), M[inner][:, inner].tocsc()
     inertia = M_ii.diagonal()
     moving = inertia > max(MASSLESS * inertia.max(), 0.0)
-    most = _most_modes(M_ii, moving)
+    most = _most_modes(M_ii, moving, modes if isinstance(modes, int | np.integer) else _FIRST)
     count = _mode_count(modes, omega, most)
     try:
         factor = Factor(K_ii)
@@ -129,6 +129,7 @@ def craig_bampton(
     if omega is not None:
         limit = physical_number(omega, "rad/s", "omega")
         while squares[-1] < limit**2 and count < most:
+            most = _most_modes(M_ii, moving, min(2 * count, most))
             count = min(2 * count, most)
             squares, shapes = lowest_modes(K_ii, M_ii, count, factor)
         wanted = int(np.searchsorted(squares, limit**2))
@@ -188,11 +189,11 @@ def _own_name(dof: Dof, rows: tuple[str, ...] | None) -> str:
     return rows[row] if rows is not None and row < len(rows) else str(row)
 
 
-def _most_modes(mass: csc_array, moving: NDArray[np.bool_]) -> int:
-    """Return how many modes are found at most; Lanczos' method does not find the last one."""
+def _most_modes(mass: csc_array, moving: NDArray[np.bool_], wanted: int | np.integer[Any]) -> int:
+    """Return how many modes there are; at most, where few are wanted, or more than can be."""
     size, count = mass.shape[0], int(moving.sum())
-    if size > DENSE or not count:
-        return min(size - 1, count)
+    if not count or (size > DENSE and not count >= wanted >= 0.5 * size):
+        return count
     # Rows with inertia may have combinations without any. Each counts in units of its own.
     inertia = mass[moving][:, moving].toarray()
     scale = 1.0 / np.sqrt(inertia.diagonal())

@@ -110,7 +110,9 @@ def lowest_modes(
     from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh
 
     size = stiffness.shape[0]
-    if size <= DENSE:
+    # For half of the modes the basis of Lanczos' method is as large as the matrix, and the highest
+    # mode is missing.
+    if size <= DENSE or 2 * count >= size:
         # 1 / (lambda - shift): the stiffness has an inverse, the mass of massless dofs has none.
         shifted = (stiffness - shift * mass).toarray()
         inverses, modes = eigh(mass.toarray(), shifted, subset_by_index=(size - count, size - 1))
