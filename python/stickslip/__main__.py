@@ -1,6 +1,6 @@
 """The command ``stickslip`` where it is not on the path: ``python -m stickslip``."""
 
-from stickslip.cli import app
+from stickslip_command import main
 
 if __name__ == "__main__":
-    app(prog_name="stickslip")
+    main()

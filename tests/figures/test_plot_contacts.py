@@ -163,3 +163,58 @@ def test_the_sum_of_forces_that_does_not_vanish_is_shown():
     assert largest > 1.0
     assert low < -largest < largest < high
     plt.close("all")
+
+
+def test_what_is_shaded_dotted_or_a_line_has_a_name(frf, fitted):
+    slipping = int(np.argmax(frf.slip_fraction(0)))
+    try:
+        assert legend(plot.contact_forces(frf, 0, slipping)[0]) == [
+            "stuck, linear",
+            "force",
+            "slips",
+        ]
+        assert legend(plot.fit(fitted)) == ["1: tip", "1: tip, predicted"]
+        assert "2 x scatter of" in legend(plot.fit_residuals(fitted))[1]
+        modes = ss.nonlinear_modes(snecma_beam(), amplitude=[1e-4, 1e-3], harmonics=1)
+        assert legend(plot.mode_damping(modes)) == ["mode 0", "mode 0, viscous part"]
+    finally:
+        plt.close("all")
+
+
+@pytest.fixture(scope="module")
+def fitted():
+    amplitude = ss.forced_response(snecma_beam(), GRID, 1).amplitude("tip")
+    measured = ss.Measurement(GRID, "tip", amplitude, relative_noise=0.02)
+    return ss.fit(snecma_beam(), measured, parameters={"slip_force": (10.0, 1e3)}, harmonics=1)
+
+
+def test_springs_have_no_share_of_slip(ax):
+    model = ss.Model(
+        snecma_beam().structure, [ss.Cubic("tip", stiffness=1e6)], [ss.Force("tip", 1.0)]
+    )
+    frf = ss.forced_response(model, GRID, 1)
+    with pytest.raises(ss.ModelError, match="springs, which neither slip nor open"):
+        plot.slip(frf, ax=ax)
+
+
+def test_a_share_that_is_open_is_said_beside_the_axis(ax):
+    pad = ss.Coulomb(
+        ["damper", "tip"],
+        normal=[0.0, 1.0],
+        friction=0.3,
+        tangential_stiffness=1e4,
+        normal_stiffness=1e4,
+        preload=0.1,
+    )
+    model = ss.Model(snecma_beam().structure, [pad], [ss.Force("tip", 20.0)])
+    frf = ss.forced_response(model, [140.0, 150.0], 3)
+    assert (frf.open_fraction(0) > 0.0).any()
+    assert "open" in plot.slip(frf, ax=ax).get_ylabel()
+
+
+def test_the_error_of_a_single_point_is_seen(ax):
+    frf = ss.forced_response(snecma_beam(), [187.0], 3)
+    plot.curves(frf, "tip", ax=ax)
+    (bar,) = (one for one in ax.collections if one.get_label() == "estimated truncation error")
+    (((_, low), (_, high)),) = bar.get_segments()
+    assert low < frf.amplitude("tip")[0] < high

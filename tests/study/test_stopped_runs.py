@@ -194,3 +194,29 @@ def test_a_signal_during_the_check_of_settings_is_no_refused_value():
             validated(Pressed, {"value": 1.0})
     finally:
         signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="exit codes of signals")
+@pytest.mark.parametrize("module", ["numpy", "typer", "stickslip.cli.run", "stickslip.study"])
+def test_ctrl_c_while_the_command_is_loaded_is_a_line(module, tmp_path):
+    (tmp_path / "study.toml").write_text(PAD)
+    code = f"""
+import signal
+import sys
+
+
+class Finder:
+    def find_spec(self, name, path=None, target=None):
+        if name == {module!r}:
+            signal.raise_signal(signal.SIGINT)
+
+
+sys.meta_path.insert(0, Finder())
+from stickslip_command import main
+
+main()
+"""
+    command = [sys.executable, "-c", code, "run", "study.toml"]
+    run = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert run.returncode == 130
+    assert run.stderr.splitlines() == ["interrupted: nothing more was saved"]

@@ -20,10 +20,9 @@ from typer.core import TyperCommand, TyperGroup
 from stickslip.checks import brief
 from stickslip.errors import ModelError
 from stickslip.interruption import SIGNALS
+from stickslip_command import STOPPED, leave
 
 NOT_CONVERGED, REFUSED, DEFECT = 1, 2, 70
-STOPPED = 128
-"""Exit code of a run that a signal has ended, beside the signal's number."""
 _AGAIN = 0.05
 """Seconds after which a signal that came during an import is heeded."""
 
@@ -65,6 +64,7 @@ class Commands(_Untyped, TyperGroup):
             code = super().main(args, *others, **options | {"standalone_mode": False})
             sys.stdout.flush()
         except typer.Abort:
+            complain("interrupted", "nothing more was saved")
             code = STOPPED + signal.SIGINT
         except _Refusal as error:
             line = " ".join(cast("typer.BadParameter", error).format_message().split()).rstrip(".")
@@ -122,7 +122,7 @@ def _ended_by_signals(ended: list[int]) -> Iterator[None]:
         number: signal.getsignal(number)
         for number in SIGNALS
         if threading.current_thread() is threading.main_thread()
-        and signal.getsignal(number) in (signal.SIG_DFL, signal.default_int_handler)
+        and signal.getsignal(number) in (signal.SIG_DFL, signal.default_int_handler, leave)
     }
     for number in handlers:
         signal.signal(number, end)

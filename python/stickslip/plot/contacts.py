@@ -197,8 +197,10 @@ def contact_forces(
         if np.isfinite(limit) and np.abs(forces[:, point]).max() > 0.3 * limit:
             style.slip_limits(ax, limit, lw=0.8, ls=":")
         slips = states.direction[:, point] != 0
+        label = "slips"
         for start, length in zip(states.start[slips], states.length[slips], strict=True):
-            ax.axvspan(start, start + length, color=style.ORANGE, alpha=0.25, lw=0.0)
+            ax.axvspan(start, start + length, color=style.ORANGE, alpha=0.25, lw=0.0, label=label)
+            label = "_"
         dof = one.dofs[point] if len(one.dofs) == one.points else " - ".join(map(str, one.dofs))
         ax.set_ylabel(f"{point}: {style.named(dof or 'ground')}\nforce [N]")
     if one.points > 1:
@@ -207,7 +209,7 @@ def contact_forces(
         # The rounding of a sum that vanishes is no motion.
         edge = max(0.05 * float(np.abs(forces).max()), 1.05 * float(np.abs(whole).max()))
         axes[-1].set(ylim=(-edge, edge), ylabel="sum\nforce [N]")
-    _finish(axes, f"{style.named(result.model.contact_names[number])}, {at(result, index)}", 2)
+    _finish(axes, f"{style.named(result.model.contact_names[number])}, {at(result, index)}", 3)
     return axes
 
 
@@ -216,7 +218,11 @@ def _finish(axes: list[Axes], title: str, columns: int) -> None:
     for ax in axes:
         style.bare(ax)
     place: Looks = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.01)}
-    axes[0].legend(**place, ncols=columns, frameon=False, fontsize="small")
+    # what one panel shows the others may lack
+    found = [zip(*reversed(ax.get_legend_handles_labels()), strict=True) for ax in axes]
+    named = {str(label): handle for pairs in found for label, handle in pairs}
+    looks: Looks = {"ncols": columns, "frameon": False, "fontsize": "small"}
+    axes[0].legend(named.values(), named.keys(), **place, **looks)
     axes[0].set_title(title, fontsize="medium", loc="left")
     axes[-1].set(xlim=(0.0, 1.0), xlabel="time over period t/T")
 
@@ -241,15 +247,17 @@ def _node_forces(result: ForcedResponse, number: int, index: int, count: int) ->
             limit = one.friction_limit(forces)[:, node]
             for side in (limit, -limit):
                 ax.plot(time, side, color=style.GREY, lw=0.8, ls=":")
-        for state, shaded in ((1, style.ORANGE), (OPEN, style.GREY)):
+        for state, shaded, label in ((1, style.ORANGE, "slips"), (OPEN, style.GREY, "open")):
+            there = states[:, node] == state
             shade: Looks = {"color": shaded, "alpha": 0.25, "lw": 0.0}
+            shade["label"] = label if there.any() else "_"
             edge = ax.get_xaxis_transform()
-            ax.fill_between(time, 0.0, 1.0, states[:, node] == state, transform=edge, **shade)
+            ax.fill_between(time, 0.0, 1.0, there, transform=edge, **shade)
         ax.set_ylabel(f"node {node}\nforce [N]" if one.points > 1 else "force [N]")
     _finish(
         axes,
         f"{style.named(result.model.contact_names[number])}, {at(result, index)}",
-        len(colours),
+        len(colours) + 2,
     )
     return axes
 
