@@ -23,6 +23,7 @@ from stickslip.plot.style import finish, number_bar
         ("$P/F_d$", "P/F<sub>d</sub>"),
         (r"$\omega_{max}^2$ & <b>", "ω<sub>max</sub><sup>2</sup> &amp; &lt;b&gt;"),
         ("5 $ only", "5 $ only"),
+        (r"cost\$1\$ $F_d$", "cost&#36;1&#36; F<sub>d</sub>"),
         ("$<x>_<$", "&lt;x&gt;_&lt;"),
     ],
 )

@@ -33,8 +33,8 @@ _HEIGHT, _LEGEND_ROW, _LEGEND_WIDTH = 400, 22, 800
 _BUTTONS = 20
 _FONT = "system-ui, -apple-system, 'Segoe UI', 'Liberation Sans', Arial, sans-serif"
 _FEW_DECADES = 2.5
-_TICKS = 8
-"""The most of a logarithmic axis."""
+_TICKS, _STEPS = 8, 5
+"""The most of a logarithmic axis, and for which plotly takes some more within a decade."""
 _TITLE, _LETTER = 14, 0.55
 """Size of the title of an axis, and the mean width of a letter over it."""
 _FRAME = 280
@@ -245,7 +245,7 @@ def _span(low: float, high: float, scale: str) -> Trace:
     decades = abs(ends[1] - ends[0])
     few = decades < _FEW_DECADES
     # Plotly takes equal steps within a decade, and 1, 2 and 5 from 0.3 to 0.7 decades per tick.
-    most = _TICKS if decades < 1.0 else ceil(decades / 0.7) if few else int(decades / 0.75)
+    most = _STEPS if decades < 1.0 else ceil(decades / 0.7) if few else int(decades / 0.75)
     written = {"nticks": min(most, _TICKS), "tickformat": ".6~g" if few else ""}
     return {"type": scale, "range": [*ends]} | written
 

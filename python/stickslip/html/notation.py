@@ -28,7 +28,8 @@ def label(text: str) -> str:
     Names of anything may stand in it: everything that plotly would take for a tag is escaped.
     """
     marked = _MATH.sub(lambda found: _formula(found[1]), escape(text, quote=False))
-    return marked.replace("\\$", "$").replace("\n", "<br>").replace(UNSEEN, "")
+    # What stands between dollars plotly takes for a formula too.
+    return marked.replace("\\$", "&#36;").replace("\n", "<br>").replace(UNSEEN, "")
 
 
 def plain(text: str) -> str:
