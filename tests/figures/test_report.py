@@ -369,3 +369,18 @@ def test_what_is_in_doubt_is_said_once(results, tmp_path):
     (doubt,) = (one.text for one in results["low"].diagnostics if one.severity == "caution")
     ss.report(results["low"], tmp_path / "a.html")
     assert Page(tmp_path / "a.html").texts.count(doubt) == 1
+
+
+@pytest.mark.slow
+def test_every_deviation_has_its_distribution(tmp_path):
+    disk = ss.reference.beam_ring(sectors=4)
+    given = {"patterns": 4, "omega": (180.0, 260.0), "dofs": ["tip"], "harmonics": 1}
+    study = ss.mistuning_study(disk, [0.02, 0.05], coupling_stiffness=[1e4, 1e5], **given)
+    ss.report(study, tmp_path / "a.html")
+    page = Page(tmp_path / "a.html")
+    assert "No figure" not in page.text
+    titles = [one["layout"]["title"]["text"] for one in page.figures]
+    for deviation in ("0.02", "0.05"):
+        for coupling in ("10000", "100000"):
+            told = f"deviation {deviation}, coupling {coupling} N/m: 4 disks"
+            assert sum(title.startswith(told) for title in titles) == 1

@@ -223,3 +223,14 @@ def test_long_titles_fit_beside_the_frame_and_lines_stay_lines():
     layout = figure_of(draw)["layout"]
     assert layout["yaxis"]["title"]["font"]["size"] < 12
     assert layout["xaxis"]["ticktext"] == ["slip_<br>force", "gap"]
+
+
+def test_captions_say_what_colours_are():
+    def draw(ax: Axes) -> None:
+        mesh = ax.pcolormesh([0, 1, 2], [0, 1], [[1.0, 2.0]])
+        ax.figure.colorbar(mesh, ax=ax, label="amplitude of tip [mm]")
+        ax.set(xlabel="nodal diameter", ylabel="damping ratio")
+
+    found = drawn(lambda *, ax: draw(ax))
+    assert found.caption == "damping ratio over nodal diameter; colours: amplitude of tip [mm]"
+    assert found.description == found.caption

@@ -328,6 +328,10 @@ def _words(ax: Axes) -> tuple[str, str]:
     title, x, y = (plain(text) for text in (ax.get_title(), ax.get_xlabel(), ax.get_ylabel()))
     what = f"{y} over {x}" if x and y else x or y
     caption = f"{title}: {what}" if title and what else title or what
+    mapped = (one.colorbar for one in (*ax.collections, *ax.images))
+    shades = [plain(bar.ax.get_ylabel()) for bar in mapped if bar is not None]
+    if any(shades):
+        caption += f"; colours: {', '.join(filter(None, shades))}"
     _, names = ax.get_legend_handles_labels()
     curves = f". Drawn: {'; '.join(map(plain, names))}" if names else ""
     return caption, caption + curves

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
+from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,7 +14,7 @@ from stickslip.errors import ModelError
 from stickslip.results.mistuning import MistuningStudy
 from stickslip.results.weibull import fit_weibull
 from stickslip.views.kinds import Dofs, Rows, View
-from stickslip.views.picture import Panels
+from stickslip.views.picture import Panels, titled
 from stickslip.views.tables import Row, counted, listed
 
 if TYPE_CHECKING:
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
 
 _HIGH = 99.9
 """Percentile of the fit that is printed."""
+_DISTRIBUTIONS = 6
+"""Those of a degree of freedom in a report; the table has all."""
 
 
 class MistuningView(View[MistuningStudy]):
@@ -88,9 +91,19 @@ class MistuningView(View[MistuningStudy]):
 
     def details(self, result: MistuningStudy, dofs: Dofs, output: OutputTable) -> Panels:
         """Return the distributions behind a picture of several deviations or couplings."""
-        if result.deviation.size == 1 and result.coupling_stiffness.size == 1:
+        deviations, couplings = result.deviation.tolist(), result.coupling_stiffness.tolist()
+        if len(deviations) == 1 and len(couplings) == 1:
             return []
-        return [partial(plots.distribution, result, dof) for dof in _chosen(result, dofs)]
+        drawn: Panels = []
+        for dof in _chosen(result, dofs):
+            for deviation, coupling in list(product(deviations, couplings))[:_DISTRIBUTIONS]:
+                stiffness = None if np.isnan(coupling) else coupling
+                own = {"deviation": deviation, "coupling": stiffness}
+                said = [f"deviation {deviation:g}"]
+                said += [] if stiffness is None else [f"coupling {stiffness:g} N/m"]
+                panel = partial(plots.distribution, result, dof, **own)
+                drawn.append(titled(panel, ", ".join(said)))
+        return drawn
 
 
 def _chosen(result: MistuningStudy, dofs: Dofs) -> Sequence[str]:
