@@ -384,3 +384,10 @@ def test_every_deviation_has_its_distribution(tmp_path):
         for coupling in ("10000", "100000"):
             told = f"deviation {deviation}, coupling {coupling} N/m: 4 disks"
             assert sum(title.startswith(told) for title in titles) == 1
+
+
+@pytest.mark.slow
+def test_tables_say_what_their_numbers_are(page):
+    # relative where others have a length, and no length of a degree of freedom
+    assert page.texts.count("rel. error") == 2
+    assert "amplitude [m kg^1/2]" in page.texts

@@ -21,7 +21,7 @@ class DamperView(View[DamperCurve]):
     """The ends of every curve and its lowest peak."""
 
     texts = ("dof", "", "varied")
-    numbers = ("value", "peak [{}]", "rad/s", RPM, "error", "H")
+    numbers = ("value", "peak [{}]", "rad/s", RPM, "rel. error", "H")
 
     def rows(self, result: DamperCurve, dofs: Dofs, length: float) -> Rows:
         """Return first, lowest and last solved value."""

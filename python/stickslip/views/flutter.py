@@ -30,7 +30,7 @@ class FlutterView(View[FlutterMap]):
     def headings(self, dofs: Dofs, length_unit: str) -> list[str]:
         """Return the headings of the numbers, among them one for every DOF."""
         shown = (f"{dof} [{length_unit}]" for dof in dofs)
-        return ["damping ratio", "from flow", "rad/s", *shown, "error"]
+        return ["damping ratio", "from flow", "rad/s", *shown, "rel. error"]
 
     def rows(self, result: FlutterMap, dofs: Dofs, length: float) -> Rows:
         """Return the rows, by rising amplitude in a wave."""

@@ -29,7 +29,7 @@ class ModeView(View[NonlinearModes]):
     def headings(self, dofs: Dofs, length_unit: str) -> list[str]:
         """Return the headings of the numbers, among them one for every DOF."""
         shown = (f"{dof} [{length_unit}]" for dof in dofs)
-        return ["amplitude", "rad/s", "damping ratio", "of it viscous", *shown]
+        return ["amplitude [m kg^1/2]", "rad/s", "damping ratio", "of it viscous", *shown]
 
     def rows(self, result: NonlinearModes, dofs: Dofs, length: float) -> Rows:
         """Return a row per amplitude."""
