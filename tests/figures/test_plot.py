@@ -424,3 +424,24 @@ def test_names_are_no_formulas_and_hide_nothing(name):
             assert any(name in text for text in shown)
     finally:
         plt.close("all")
+
+
+@pytest.mark.parametrize("unit", ["m", "um", "auto"])
+def test_an_axis_within_a_decade_has_several_numbers(unit):
+    frf = ss.forced_response(snecma_beam(), [187.0, 188.0], 3)
+    try:
+        axis = frf.plot("damper", length_unit=unit, stuck=False, free=False).yaxis
+        axis.figure.draw_without_rendering()
+        low, high = axis.get_view_interval()
+        shown = [
+            label.get_text()
+            for minor in (False, True)
+            for place, label in zip(
+                axis.get_ticklocs(minor=minor), axis.get_ticklabels(minor=minor), strict=True
+            )
+            if low <= place <= high and label.get_text()
+        ]
+        assert high < 10.0 * low
+        assert len(shown) >= 3
+    finally:
+        plt.close("all")

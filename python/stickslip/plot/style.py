@@ -17,7 +17,9 @@ from matplotlib.ticker import (
     FuncFormatter,
     LogFormatterMathtext,
     LogLocator,
+    MaxNLocator,
     NullFormatter,
+    NullLocator,
 )
 
 from stickslip.checks import brief
@@ -49,6 +51,7 @@ _SIZE = (6.4, 4.2)
 _WIDE = (8.2, 4.2)
 _FEW = 6
 _FEW_DECADES = 2.5
+_STEPS = 5
 _PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 _LENGTHS = ("m", "m/N", "m/s")
 _PREFIXED = (*_LENGTHS, "N", "N/m", "J", "W")
@@ -350,7 +353,7 @@ def prefix_axes(ax: Axes, *, lengths: bool) -> None:
             few = not powers and np.log10(high / low) < _FEW_DECADES
             axis.set_minor_formatter(Prefixed(scale.factor) if few else NullFormatter())
             if few:
-                axis.set_minor_locator(LogLocator(subs=(2.0, 5.0)))
+                _number_between(axis, low, high)
 
 
 def number_bar(ax: Axes) -> None:
@@ -364,13 +367,22 @@ def number_bar(ax: Axes) -> None:
 def _number_decades(ax: Axes) -> None:
     """Write plain numbers on a logarithmic axis, and some between the decades if there are few."""
     low, high = ax.get_ylim()
-    plain = low > 1e-4 and high < 1e5
+    plain = (low > 1e-4 and high < 1e5) or high < 10.0 * low
     written = FuncFormatter(lambda value, _: f"{value:g}") if plain else LogFormatterMathtext()
     between = plain and np.log10(high / low) < _FEW_DECADES
     ax.yaxis.set_major_formatter(written)
     ax.yaxis.set_minor_formatter(written if between else NullFormatter())
     if between:
-        ax.yaxis.set_minor_locator(LogLocator(subs=(2.0, 5.0)))
+        _number_between(ax.yaxis, low, high)
+
+
+def _number_between(axis: Any, low: float, high: float) -> None:
+    """Put numbers between the decades; within one, where these may be none, at equal steps."""
+    if high < 10.0 * low:
+        axis.set_major_locator(MaxNLocator(_STEPS))
+        axis.set_minor_locator(NullLocator())
+    else:
+        axis.set_minor_locator(LogLocator(subs=(2.0, 5.0)))
 
 
 def _drawn(ax: Axes, groups: Sequence[str]) -> list[Line2D]:
