@@ -7,12 +7,18 @@ import sys
 from pathlib import Path
 
 import pytest
+from matplotlib.figure import Figure
 from typer.testing import CliRunner
 
 import stickslip as ss
 from small_study import ONE_CONTACT, ONE_FORCE, STRUCTURE
 from stickslip.cli import app
+from stickslip.cli.drawing import Wanted
+from stickslip.cli.run import _panels
+from stickslip.reference import snecma_beam
 from stickslip.study import Study
+from stickslip.study.tables import OutputTable
+from stickslip.views.kinds import view_of
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "snecma-beam"
 
@@ -313,6 +319,9 @@ def test_ctrl_c_saves_the_part_of_a_run(folder):
 import os, signal
 from stickslip.study.analysis import TransientTable as table
 from stickslip.cli import app
+from stickslip.cli.drawing import Wanted
+from stickslip.cli.run import _panels
+from stickslip.reference import snecma_beam
 signal.signal(signal.SIGINT, signal.default_int_handler)
 whole = table.analysis
 def interrupted(*arguments, **options):
@@ -330,3 +339,29 @@ app(["run", "study.toml"])
     partial = ss.load("results/beam-20.313-partial.nc")
     assert partial.status == "interrupted"
     assert 0 < partial.periods < 2_000_000
+
+
+def drawn_titles(panels):
+    titles = []
+    for panel in panels:
+        ax = Figure().add_subplot()
+        panel(ax=ax)
+        titles.append(ax.get_title())
+    return titles
+
+
+@pytest.mark.slow
+def test_pictures_name_the_results_they_show():
+    moved = [
+        ("0.3", ss.transient(snecma_beam(6.0), 170.0, 3)),
+        ("1", ss.transient(snecma_beam(), 170.0, 3)),
+    ]
+    output = OutputTable()
+    titles = drawn_titles(_panels(view_of([moved[0][1]]), moved, ["tip"], output))
+    half = len(titles) // 2
+    assert all(title.startswith("level 0.3") for title in titles[:half])
+    assert all(title.startswith("level 1") for title in titles[half:])
+    wanted = Wanted(dofs=["tip"], omega_unit="rad/s", log=True, per_force=False, contact="0")
+    named = [("first.nc", moved[0][1]), ("second.nc", moved[1][1])]
+    _, panels = wanted.picture({}, named)
+    assert {title.partition(":")[0] for title in drawn_titles(panels)} == {"first.nc", "second.nc"}
