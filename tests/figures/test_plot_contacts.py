@@ -175,6 +175,7 @@ def test_what_is_shaded_dotted_or_a_line_has_a_name(frf, fitted):
         ]
         assert legend(plot.fit(fitted)) == ["1: tip", "1: tip, predicted"]
         assert "2 x scatter of" in legend(plot.fit_residuals(fitted))[1]
+        assert plot.fit_intervals(fitted).get_xlabel().startswith("95 % interval")
         modes = ss.nonlinear_modes(snecma_beam(), amplitude=[1e-4, 1e-3], harmonics=1)
         assert legend(plot.mode_damping(modes)) == ["mode 0", "mode 0, viscous part"]
     finally:

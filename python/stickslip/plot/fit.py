@@ -144,4 +144,6 @@ def fit_intervals(ax: Axes, /, result: Fit, **options: Unpack[Drawing]) -> None:
             )
     ax.axvline(1.0, color=style.GREY, lw=0.9)
     ax.set_yticks(place, [*map(style.named, names)])
-    ax.set(xlabel="interval relative to the value", ylim=(len(names) - 0.5, -0.5))
+    confidence = f"{100.0 * result.settings.confidence:g} %"
+    ax.set_xlabel(f"{confidence} interval relative to the value")
+    ax.set_ylim(len(names) - 0.5, -0.5)
