@@ -391,3 +391,12 @@ def test_tables_say_what_their_numbers_are(page):
     # relative where others have a length, and no length of a degree of freedom
     assert page.texts.count("rel. error") == 2
     assert "amplitude [m kg^1/2]" in page.texts
+
+
+@pytest.mark.slow
+def test_a_long_transient_is_no_huge_page(tmp_path):
+    moved = ss.transient(BEAM, 170.0, 1000, keep=1000, samples=64)
+    ss.report(moved, tmp_path / "a.html")
+    page = Page(tmp_path / "a.html")
+    assert max(len(json.dumps(figure)) for figure in page.figures) < 1_000_000
+    assert page.figures[-1]["layout"]["title"]["text"] == "the last 100 periods"

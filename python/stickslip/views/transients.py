@@ -9,11 +9,14 @@ from typing import TYPE_CHECKING
 from stickslip.drawn import plots
 from stickslip.results.transient import Transient
 from stickslip.views.kinds import Dofs, Rows, View
-from stickslip.views.picture import Panels
+from stickslip.views.picture import Panels, titled
 from stickslip.views.tables import Row
 
 if TYPE_CHECKING:
     from stickslip.study.tables import OutputTable
+
+_LOOPS = 100
+"""Periods of a phase plane in a report."""
 
 
 class TransientView(View[Transient]):
@@ -75,4 +78,8 @@ class TransientView(View[Transient]):
         """Return the phase plane of the first DOF."""
         if not result.periods:
             return []
-        return [partial(plots.phase, result, dofs[0], length_unit=output.length_unit)]
+        phase = partial(plots.phase, result, dofs[0], length_unit=output.length_unit)
+        if result.kept_periods <= _LOOPS:
+            return [phase]
+        # thousands of loops are a ring of ink, and a page of tens of megabytes
+        return [titled(partial(phase, last=_LOOPS), f"the last {_LOOPS} periods")]
