@@ -20,6 +20,7 @@ from stickslip.errors import ModelError
 from stickslip.html.figures import Drawn, drawn
 from stickslip.html.models import summaries
 from stickslip.model.notable import notable_dofs
+from stickslip.results.diagnostic import Severity
 from stickslip.results.result import Result
 from stickslip.results.store import content_of
 from stickslip.study.tables import OutputTable
@@ -93,16 +94,15 @@ def _group(
     sections = []
     for entry in members:
         result = entry.result
-        missing, doubted = failures(result), cautions(result)
         section = {
             "anchor": entry.anchor,
             "name": entry.name,
-            "failures": missing,
-            "cautions": doubted,
+            "failures": failures(result),
+            "cautions": cautions(result),
             "facts": [
                 row for row in view.facts(result) if row[0] != "assumed" and row not in known
             ],
-            "assumptions": [one for one in result.assumptions if one not in (*missing, *doubted)],
+            "assumptions": _said(result, Severity.NOTE),
             "figures": _figures(view.details(result, shown, output)),
             "settings": _settings(result),
             "effort": _effort(result),
@@ -116,6 +116,11 @@ def _group(
         "models": models,
         "sections": sections,
     }
+
+
+def _said(result: Result, severity: Severity) -> list[str]:
+    """Return the texts of one severity; those of others stand above."""
+    return [one.text for one in result.diagnostics if one.severity is severity]
 
 
 def _together(
