@@ -118,6 +118,23 @@ pub fn is_half_wave(orders: usize, amplitudes: impl Fn(usize) -> Complex64) -> b
     (0..orders).step_by(2).all(|k| amplitudes(k) == Complex64::new(0.0, 0.0))
 }
 
+/// Real coefficients of displacements `(points, H+1)`, point after point, with their harmonics: odd ones
+/// alone if no other is there and the motion is `odd`.
+pub fn coefficients(
+    displacement: &Array2<'_, Complex64>,
+    odd: bool,
+) -> PyResult<(Harmonics, Vec<f64>)> {
+    let view = displacement.as_array();
+    if !view.iter().all(|amplitude| amplitude.is_finite()) {
+        return Err(PyValueError::new_err("displacement: every amplitude must be finite"));
+    }
+    let (points, orders) = (view.nrows(), view.ncols());
+    let half_wave = odd && (0..points).all(|n| is_half_wave(orders, |k| view[[n, k]]));
+    let harmonics = Harmonics::new(orders.saturating_sub(1), half_wave);
+    let values = (0..points).flat_map(|n| series(&harmonics, |k| view[[n, k]])).collect();
+    Ok((harmonics, values))
+}
+
 /// A two-dimensional array from rows of equal length.
 pub fn table<'py, T: numpy::Element + Clone>(
     py: Python<'py>,

@@ -1,13 +1,12 @@
 //! What a friction law does along a given motion.
 
-use crate::arrays::{check_samples, is_half_wave, refused, series, table, Array2};
+use crate::arrays::{check_samples, coefficients, refused, table, Array2};
 use crate::problem::Problem;
 use crate::settings::{evaluated, residual};
 use numpy::{Complex64, PyArray1, PyArray2};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use stickslip_core::contact::{ContactLaw, Motion, Residual};
-use stickslip_core::fourier::{Harmonics, SampleTable};
+use stickslip_core::fourier::SampleTable;
 
 /// Hands the law of a contact and its motion to `work`, for displacements `(points, H+1)`.
 fn along<R>(
@@ -20,18 +19,11 @@ fn along<R>(
 ) -> PyResult<R> {
     let known = problem.assuming(residual).map_err(refused)?;
     let model = evaluated(known, march).map_err(refused)?;
-    let view = displacement.as_array();
-    let (points, orders) = (view.nrows(), view.ncols());
-    if !view.iter().all(|amplitude| amplitude.is_finite()) {
-        return Err(PyValueError::new_err("displacement: every amplitude must be finite"));
-    }
     // A normal load that varies does not change its sign with the motion.
     let odd = model.laws()[contact].is_odd() && residual.is_symmetric();
-    let half_wave = odd && (0..points).all(|n| is_half_wave(orders, |k| view[[n, k]]));
-    let sample_table = SampleTable::new(Harmonics::new(orders - 1, half_wave));
-    let coefficients: Vec<f64> =
-        (0..points).flat_map(|n| series(sample_table.harmonics(), |k| view[[n, k]])).collect();
-    let motion = Motion { table: &sample_table, displacement: &coefficients, residual };
+    let (harmonics, displacement) = coefficients(displacement, odd)?;
+    let sample_table = SampleTable::new(harmonics);
+    let motion = Motion { table: &sample_table, displacement: &displacement, residual };
     Ok(work(model.laws()[contact].as_ref(), motion))
 }
 

@@ -1,6 +1,6 @@
 //! Forced response: settings in, curves out, progress and Ctrl-C in between.
 
-use crate::arrays::{is_half_wave, series, Array1, Array2};
+use crate::arrays::{coefficients, is_half_wave, series, Array1, Array2};
 use crate::columns::{stability_code, Columns};
 use crate::problem::Problem;
 use crate::settings::{balance as balance_settings, get, measure};
@@ -12,7 +12,7 @@ use std::mem::take;
 use std::sync::Arc;
 use stickslip_core::balance::{
     self, sweep, without_gap, CurveEnd, ForcedBalance, HarmonicChoice, Kept, Point, PointStatus,
-    Progress, Settings, HIGHEST_ORDER,
+    Progress, Settings, Unknowns, HIGHEST_ORDER,
 };
 use stickslip_core::design::bound;
 use stickslip_core::fourier::{self, Harmonics, Measure, SampleTable};
@@ -128,9 +128,11 @@ pub fn curve<'a, 'py>(
 }
 
 /// Harmonic balance over a grid or a range of frequencies. `bounds` asks for those over the residual
-/// tractions, and tells whether one vibration alone is known to exist.
+/// tractions, and tells whether one vibration alone is known to exist. The first frequency of a grid begins
+/// with the contact displacements `start`, `(points, H+1)`.
 #[pyfunction]
-#[pyo3(signature = (problem, omega, observe, driving, settings, progress, bounds=None))]
+#[pyo3(signature = (problem, omega, observe, driving, settings, progress, bounds=None, start=None))]
+#[allow(clippy::too_many_arguments)]
 pub fn forced_response<'py>(
     py: Python<'py>,
     problem: &Problem,
@@ -140,7 +142,9 @@ pub fn forced_response<'py>(
     settings: &Bound<'_, PyAny>,
     progress: Option<Py<PyAny>>,
     bounds: Option<bool>,
+    start: Option<Array2<'py, Complex64>>,
 ) -> PyResult<Bound<'py, PyAny>> {
+    let start = start.map(|start| motion_of(problem, &start)).transpose()?.flatten();
     let stability =
         settings.getattr_opt("stability")?.map_or(Ok(false), |given| given.extract())?;
     let settings = balance_settings(settings)?;
@@ -154,7 +158,7 @@ pub fn forced_response<'py>(
             Frequencies::Range(range) => sweep_range_in_pieces(&balances, range, look),
             Frequencies::Grid(grid) => {
                 sweep_in_pieces(model, &settings, &grid, look, |piece, look| {
-                    balances.with(look, |balance| sweep(balance, piece))
+                    balances.with(look, |balance| sweep(balance.begun_with(start.clone()), piece))
                 })
             }
         }?;
@@ -166,6 +170,13 @@ pub fn forced_response<'py>(
         }
         Ok(found)
     })
+}
+
+/// Contact displacements `(points, H+1)` of a model as a start for another, if that has as many.
+fn motion_of(problem: &Problem, start: &Array2<'_, Complex64>) -> PyResult<Option<Unknowns>> {
+    let (harmonics, values) = coefficients(start, false)?;
+    let fits = values.len() == problem.model.compliance().contacts() * harmonics.slots();
+    Ok(fits.then(|| Unknowns::new(harmonics, values)))
 }
 
 /// Single-harmonic balance over a grid of frequencies.

@@ -99,6 +99,7 @@ def forced_response(
     settings: BalanceSettings,
     progress: Progress,
     bounds: bool | None = None,
+    start: Complex | None = None,
 ) -> Solution: ...
 def amplitude(coefficients: Complex, measure: str) -> Float: ...
 def contact_force(

@@ -39,6 +39,8 @@ pub struct ForcedBalance<'a> {
     pub(super) tangent: Option<Tangent>,
     progress: &'a Progress<'a>,
     pub(super) kept: Option<&'a Kept<Point>>,
+    /// What the first point of a sweep begins with, if anything is known beforehand.
+    pub(super) start: Option<Unknowns>,
     pub(super) rescue: Option<&'a dyn ExactOrbits>,
     /// Whether further branches are looked for.
     pub(super) further: bool,
@@ -117,6 +119,7 @@ impl<'a> ForcedBalance<'a> {
             tangent: None,
             progress: &|_| true,
             kept: None,
+            start: None,
             rescue: None,
             further: false,
             share: 0.0,
@@ -153,6 +156,13 @@ impl<'a> ForcedBalance<'a> {
     #[must_use]
     pub fn keeping(mut self, kept: &'a Kept<Point>) -> Self {
         self.kept = Some(kept);
+        self
+    }
+
+    /// Has a sweep begin with a motion, as that of a model beside this one.
+    #[must_use]
+    pub fn begun_with(mut self, start: Option<Unknowns>) -> Self {
+        self.start = start;
         self
     }
 

@@ -25,6 +25,7 @@ from stickslip.analyses.uniqueness import is_unique
 from stickslip.memory import require_memory
 from stickslip.model import Model
 from stickslip.results import ForcedResponse
+from stickslip.results.fields import Complex
 from stickslip.settings.balance import BalanceKeys, BalanceSettings, ForcedSettings, StabilityKey
 from stickslip.settings.settings import configured
 
@@ -75,6 +76,21 @@ def forced_response(
     Cameron and Griffin (1989): alternating frequency and time. The receptance form in contact
     displacements, its closed-form tangent and the error estimate are this package's.
     """
+    return begun_with(None, model, settings, outputs, progress)
+
+
+def begun_with(
+    start: Complex | None,
+    model: Model,
+    settings: BalanceKeys,
+    outputs: Iterable[str] | str = (),
+    progress: Progress = None,
+) -> ForcedResponse:
+    """Return the forced response whose first point begins with a motion of its contacts.
+
+    It has the displacements (points, H+1) [m] of a model beside this one; where that has more or
+    fewer contacts, and of a range, the first point begins without.
+    """
     grid, bounded = settings.omega, settings.bounded
     settings = settings.nominal(model)
     span = grid if isinstance(grid, tuple) else None
@@ -99,6 +115,7 @@ def forced_response(
                 kept,
                 run,
                 is_unique(model) if bounded else None,
+                start,
             )
         arrays = arrays_of(solution, model)
         result = ForcedResponse.of(

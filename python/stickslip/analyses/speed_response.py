@@ -8,16 +8,17 @@ from time import perf_counter
 import numpy as np
 
 from stickslip.analyses.campbell import model_at
-from stickslip.analyses.forced_response import forced_response
+from stickslip.analyses.forced_response import begun_with
 from stickslip.analyses.run import Progress
 from stickslip.checks import brief
 from stickslip.disk.rotor import rotor_order
 from stickslip.errors import Interrupted, ModelError
 from stickslip.model import Model
-from stickslip.results.fields import Float
+from stickslip.results.fields import Complex, Float
 from stickslip.results.forced_response import ForcedResponse
 from stickslip.results.speed_response import SpeedArrays, SpeedResponse
 from stickslip.results.sweep import told
+from stickslip.settings.balance import BalanceKeys
 from stickslip.settings.settings import configured
 from stickslip.settings.speed import SpeedKeys, SpeedSettings
 
@@ -32,8 +33,9 @@ def speed_response(
 
     At a speed W the forces have the frequency of their engine order, E W; `build` makes the model
     there, with the centrifugal loads of dampers and the stiffness of the turning blades. Each speed
-    is solved by itself: where several motions exist the answer is any of them, and may be another
-    at the next speed. `forced_response` follows them over the frequency.
+    begins with the motion of the speed before: where several motions exist the answer stays on its
+    branch from speed to speed, upwards or downwards as they are given, until the branch ends or a
+    step of the speed is too large for it.
 
     Parameters
     ----------
@@ -82,14 +84,14 @@ def speed_response(
         order = _order(model, settings.engine_order)
         models.append(model)
         try:
-            response = forced_response(
-                model,
-                [order * speed],
-                settings.harmonics,
+            point = BalanceKeys.of(
+                omega=[order * speed],
+                harmonics=settings.harmonics,
                 observe=[settings.dof],
                 stability=False,
                 tolerance=_TOLERANCE,
             )
+            response = begun_with(_last_motion(found), model, point.suited(model))
         except Interrupted as stop:
             if not found:
                 raise
@@ -99,6 +101,13 @@ def speed_response(
         if progress is not None:
             progress((number + 1) / speeds.size)
     return result(interrupted=False)
+
+
+def _last_motion(found: list[ForcedResponse]) -> Complex | None:
+    """Return the contact displacements at the speed before, if it was solved."""
+    if not found or not found[-1].converged[0]:
+        return None
+    return found[-1].arrays.contact_displacement[0].T
 
 
 def _order(model: Model, given: float | None) -> float:
