@@ -1,7 +1,9 @@
 //! The elements of all contacts, one after the other.
 
 use super::microslip::{Loaded, Microslip};
-use crate::contact::{Bound, ContactLaw, Elastic, PointState, SlipElement, SlipPlane, REVERSALS};
+use crate::contact::{
+    Bound, ContactLaw, Elastic, PointState, Slider, SlipElement, SlipPlane, REVERSALS,
+};
 use crate::model::Model;
 use crate::Error;
 use faer::Mat;
@@ -32,6 +34,18 @@ pub(crate) struct Body {
     pub(crate) strains: Range<usize>,
     /// Of the forces that it remembers.
     pub(crate) elastic: Elastic,
+}
+
+impl Body {
+    /// The slider that an element is whose one point remembers its force and has a constant limit.
+    pub(super) fn slider(&self) -> Option<Slider> {
+        match (&self.law.bounds()[..], &self.remembered[..]) {
+            (&[Bound::Constant(slip_force)], [_]) => {
+                Some(Slider { stiffness: self.law.stiffness()[(0, 0)], slip_force })
+            }
+            _ => None,
+        }
+    }
 }
 
 /// The elements of all contacts, and the contact displacement that each of their points acts on.

@@ -58,7 +58,6 @@ pub use power_series::PowerSeries;
 pub(crate) use power_series::Values;
 pub(crate) use propagator::Propagators;
 pub(crate) use quadrature::Quadrature;
-pub use runge_kutta::RungeKutta;
 pub use state::State;
 pub use transient::transient;
 pub(crate) use transition::Transition;

@@ -189,16 +189,6 @@ impl ModalSystem {
         (0..self.displacements()).filter_map(first).map(|point| points[point]).collect()
     }
 
-    /// Forces of the elements gathered into those of the contact displacements.
-    #[must_use]
-    pub fn contact_forces(&self, elements: &[f64]) -> Vec<f64> {
-        let mut forces = vec![0.0; self.displacements()];
-        for (component, force) in self.components.iter().zip(elements) {
-            forces[*component] += force;
-        }
-        forces
-    }
-
     /// Slip and friction work of the elements gathered into those of the contact displacements: the
     /// share in slip is the mean weighted by stiffness.
     #[must_use]

@@ -8,7 +8,7 @@ use super::microslip::Turn;
 use super::modal_system::{dot, ModalSystem};
 use super::modal_way::ModalWay;
 use super::polynomial::{sign_changes, value, DEGREE};
-use super::runge_kutta::RungeKutta;
+use super::runge_kutta::{lanes, Lanes, RungeKutta};
 use super::state::State;
 use crate::contact::SlipPlane;
 use crate::solve::size;
@@ -28,6 +28,8 @@ pub(super) struct Output<'a> {
     system: &'a ModalSystem,
     settings: &'a TransientSettings,
     shapes: Vec<Vec<f64>>,
+    /// The first point on every contact displacement.
+    firsts: Vec<usize>,
 }
 
 impl<'a> Output<'a> {
@@ -37,19 +39,41 @@ impl<'a> Output<'a> {
         observe: &[usize],
     ) -> Self {
         let shapes = observe.iter().map(|&dof| system.shape(dof).collect()).collect();
-        Self { system, settings, shapes }
+        let points: Vec<usize> = (0..system.points()).collect();
+        Self { system, settings, shapes, firsts: system.shared(&points) }
     }
 
     /// Adds an output instant.
     pub(super) fn push(&self, time: f64, x: &[f64], v: &[f64], force: &[f64], trace: &mut Trace) {
+        self.put(
+            time,
+            self.shapes.iter().map(|shape| [dot(shape, x), dot(shape, v)]),
+            |point| dot(self.system.contact_shape(point), x),
+            force,
+            trace,
+        );
+    }
+
+    /// The same of the observed displacements and velocities, and the displacement of every point.
+    fn put(
+        &self,
+        time: f64,
+        observed: impl Iterator<Item = [f64; 2]>,
+        displacement: impl Fn(usize) -> f64,
+        force: &[f64],
+        trace: &mut Trace,
+    ) {
         trace.time.push(time);
-        for shape in &self.shapes {
-            trace.displacement.push(dot(shape, x));
-            trace.velocity.push(dot(shape, v));
+        for [x, v] in observed {
+            trace.displacement.push(x);
+            trace.velocity.push(v);
         }
-        let displacement = self.system.contact_displacement(x);
-        trace.contact_displacement.extend(self.system.shared(&displacement));
-        trace.force.extend(self.system.contact_forces(force));
+        trace.contact_displacement.extend(self.firsts.iter().map(|&point| displacement(point)));
+        let known = trace.force.len();
+        trace.force.resize(known + self.firsts.len(), 0.0);
+        for (component, force) in self.system.components().iter().zip(force) {
+            trace.force[known + component] += force;
+        }
     }
 
     /// Time of an output instant within the period \[s\].
@@ -107,54 +131,47 @@ impl<'a> Output<'a> {
     pub(super) fn step_through(
         &self,
         scheme: &mut RungeKutta<'_>,
-        state: &mut State,
         begin: f64,
         history: &mut History,
         progress: &dyn Fn() -> bool,
     ) -> Result<bool, Halt> {
-        let steps = scheme.steps();
+        let (steps, samples) = (scheme.steps(), self.settings.samples);
         let kept = history.trace.time.len();
         let h = scheme.step();
         let mut sample = 1;
         let mut range = vec![[f64::INFINITY, f64::NEG_INFINITY]; self.shapes.len()];
         let mut ends = vec![[0.0; 4]; self.shapes.len()];
-        for (ends, shape) in ends.iter_mut().zip(&self.shapes) {
-            ends[2..].copy_from_slice(&[
-                dot(shape, &state.displacement),
-                h * dot(shape, &state.velocity),
-            ]);
+        let shapes: Vec<Vec<Lanes>> = self.shapes.iter().map(|shape| lanes(shape)).collect();
+        for (ends, shape) in ends.iter_mut().zip(&shapes) {
+            let [x, v] = scheme.end().along(shape);
+            ends[2..].copy_from_slice(&[x, h * v]);
         }
-        let mut before = state.clone();
         for index in 0..steps {
             if index % LOOK == LOOK - 1 && !progress() {
                 self.truncate(&mut history.trace, kept);
                 return Ok(false);
             }
-            let reached = (index + 1) * self.settings.samples;
-            let sampled = sample <= self.settings.samples && sample * steps <= reached;
-            if sampled {
-                before.clone_from(state);
-            }
-            scheme.advance(state, index);
-            if !state.is_bounded() {
+            scheme.advance();
+            let end = scheme.end();
+            if !end.is_bounded() {
                 history.range.extend(range);
                 return Err(Halt::Unbounded);
             }
-            for ((ends, shape), range) in ends.iter_mut().zip(&self.shapes).zip(&mut range) {
-                *ends = [
-                    ends[2],
-                    ends[3],
-                    dot(shape, &state.displacement),
-                    h * dot(shape, &state.velocity),
-                ];
+            for ((ends, shape), range) in ends.iter_mut().zip(&shapes).zip(&mut range) {
+                let [x, v] = end.along(shape);
+                *ends = [ends[2], ends[3], x, h * v];
                 widen_by_cubic(ends, range);
             }
-            while sample <= self.settings.samples && sample * steps <= reached {
-                let share = (sample * steps) as f64 / self.settings.samples as f64 - index as f64;
-                let between = scheme.between(&before, state, share);
-                let time = begin + self.instant(sample);
-                let trace = &mut history.trace;
-                self.push(time, &between.displacement, &between.velocity, &between.force, trace);
+            while sample <= samples && sample * steps <= (index + 1) * samples {
+                let share = (sample * steps) as f64 / samples as f64 - index as f64;
+                let at = scheme.within(share);
+                self.put(
+                    begin + self.instant(sample),
+                    shapes.iter().map(|shape| at.along(shape)),
+                    |point| at.contacts[point],
+                    &at.force,
+                    &mut history.trace,
+                );
                 sample += 1;
             }
         }
@@ -164,7 +181,7 @@ impl<'a> Output<'a> {
 
     /// Keeps the first `instants` of a trace.
     fn truncate(&self, trace: &mut Trace, instants: usize) {
-        let (dofs, points) = (self.shapes.len(), self.system.displacements());
+        let (dofs, points) = (self.shapes.len(), self.firsts.len());
         trace.time.truncate(instants);
         trace.displacement.truncate(instants * dofs);
         trace.velocity.truncate(instants * dofs);
@@ -184,7 +201,7 @@ impl<'a> Output<'a> {
             return;
         }
         let first = (periods - keep) * samples;
-        let (dofs, points) = (self.shapes.len(), self.system.displacements());
+        let (dofs, points) = (self.shapes.len(), self.firsts.len());
         trace.time.drain(..first);
         trace.displacement.drain(..first * dofs);
         trace.velocity.drain(..first * dofs);

@@ -1,175 +1,285 @@
 //! Classical fourth-order Runge-Kutta, the reference of the field.
 
-use super::modal_system::{dot, ModalSystem};
+use super::bodies::Body;
+use super::modal_system::ModalSystem;
 use super::state::State;
+use crate::contact::{Slider, SlipElement as _};
+use std::array::from_fn;
+use std::f64::consts::TAU;
+use std::mem::swap;
+
+/// Modes that are computed side by side: loops over few numbers take longer to begin than to run.
+const LANES: usize = 4;
+/// A number of each of some modes; those that are missing have zeros.
+pub(super) type Lanes = [f64; LANES];
 
 /// Integrates the modes with equal steps; contact forces follow from the laws' return maps from
 /// the start of each step.
-pub struct RungeKutta<'a> {
-    system: &'a ModalSystem,
+pub(super) struct RungeKutta<'a> {
+    equations: Equations<'a>,
     steps: usize,
     step: f64,
-    /// Modal load at the start and the middle of each step.
-    loads: Vec<f64>,
-    /// Velocities and accelerations.
-    stages: [Vec<f64>; 4],
-    /// Displacements at which forces are asked for.
-    trial: Vec<f64>,
-    reference: Vec<f64>,
-    reached: Vec<f64>,
-    force: Vec<f64>,
-    memory: Vec<f64>,
+    /// Where the last step began, its inner stages, and where it ended.
+    begin: Stage,
+    stages: [Stage; 3],
+    end: Stage,
+    /// The motion within the last step.
+    within: Stage,
     /// Steps taken since the start.
-    pub taken: usize,
+    pub(super) taken: usize,
+}
+
+/// The motion at a stage of a step.
+#[derive(Debug, Clone)]
+pub(super) struct Stage {
+    modes: Vec<Modes>,
+    /// Displacements of the contacts.
+    pub(super) contacts: Vec<f64>,
+    pub(super) force: Vec<f64>,
+    memory: Vec<f64>,
+}
+
+/// Displacements, velocities and accelerations of some modes.
+#[derive(Debug, Clone, Copy, Default)]
+struct Modes {
+    x: Lanes,
+    v: Lanes,
+    a: Lanes,
+}
+
+/// The equations of motion at the starts and the middles of all steps of a period.
+struct Equations<'a> {
+    /// Squared frequencies and damping of the modes.
+    own: Vec<[Lanes; 2]>,
+    /// The damping where modes damp each other, column after column.
+    mutual: Vec<Vec<Lanes>>,
+    /// Loads at the start and the middle of each step, and at the end of the last.
+    loads: Vec<Lanes>,
+    /// Displacement of every contact per mode.
+    shapes: Vec<Lanes>,
+    /// Contacts that are sliders, with their points: a call of each would take longer than what it does.
+    sliders: Vec<(usize, Slider)>,
+    others: Vec<&'a Body>,
 }
 
 impl<'a> RungeKutta<'a> {
-    /// The scheme with `steps` steps per period at a frequency [rad/s].
-    #[must_use]
-    pub fn new(system: &'a ModalSystem, omega: f64, steps: usize) -> Self {
-        let modes = system.modes();
-        let mut loads = vec![0.0; 2 * steps * modes];
-        for (i, load) in loads.chunks_exact_mut(modes).enumerate() {
-            let phase = std::f64::consts::TAU * i as f64 / (2 * steps) as f64;
-            system.add_load(phase, 1.0, load);
-        }
-        let points = system.points();
+    /// The scheme with `steps` steps per period at a frequency [rad/s], from a state at the start of a
+    /// period; forces that follow from the displacements need not be known.
+    pub(super) fn new(system: &'a ModalSystem, omega: f64, steps: usize, state: &State) -> Self {
+        let equations = Equations::new(system, steps);
+        let motion = lanes(&state.displacement).into_iter().zip(lanes(&state.velocity));
+        let begin = Stage {
+            modes: motion.map(|(x, v)| Modes { x, v, a: [0.0; LANES] }).collect(),
+            contacts: system.contact_displacement(&state.displacement),
+            force: state.force.clone(),
+            memory: state.memory.clone(),
+        };
+        let mut end = begin.clone();
+        equations.follow(&begin, 0.0, &begin, &mut end, 0);
         Self {
-            system,
+            equations,
             steps,
-            step: std::f64::consts::TAU / omega / steps as f64,
-            loads,
-            stages: std::array::from_fn(|_| vec![0.0; 2 * modes]),
-            trial: vec![0.0; modes],
-            reference: vec![0.0; points],
-            reached: vec![0.0; points],
-            force: vec![0.0; points],
-            memory: Vec::new(),
+            step: TAU / omega / steps as f64,
+            stages: from_fn(|_| begin.clone()),
+            within: begin.clone(),
+            begin,
+            end,
             taken: 0,
         }
     }
 
     /// Steps per period.
-    #[must_use]
-    pub fn steps(&self) -> usize {
+    pub(super) fn steps(&self) -> usize {
         self.steps
     }
 
     /// Length of a step \[s\].
-    #[must_use]
-    pub fn step(&self) -> f64 {
+    pub(super) fn step(&self) -> f64 {
         self.step
     }
 
-    /// Gives a state the forces of laws that have them from the displacements.
-    pub fn settle(&mut self, state: &mut State) {
-        self.refer_to(&state.displacement);
-        self.trial.copy_from_slice(&state.displacement);
-        self.forces(state);
-        state.force.copy_from_slice(&self.force);
+    /// Where the last step ended.
+    pub(super) fn end(&self) -> &Stage {
+        &self.end
     }
 
-    /// Takes the step of number `index` in the period.
-    pub fn advance(&mut self, state: &mut State, index: usize) {
-        let modes = self.system.modes();
-        let h = self.step;
-        self.refer_to(&state.displacement);
-        self.trial.copy_from_slice(&state.displacement);
-        self.force.copy_from_slice(&state.force);
-        self.stages[0][..modes].copy_from_slice(&state.velocity);
-        self.accelerations(0, 2 * index);
-        for (stage, share, half_steps) in [(1, 0.5, 1), (2, 0.5, 1), (3, 1.0, 2)] {
-            let (done, next) = self.stages.split_at_mut(stage);
-            let (velocity, acceleration) = done[stage - 1].split_at(modes);
-            go_on(&mut self.trial, &state.displacement, share * h, velocity);
-            go_on(&mut next[0][..modes], &state.velocity, share * h, acceleration);
-            self.forces(state);
-            let at = 2 * index + half_steps;
-            self.accelerations(stage, if at < 2 * self.steps { at } else { 0 });
-        }
-        let [a, b, c, d] = &self.stages;
-        let rates = a.iter().zip(b).zip(c).zip(d).map(|(((a, b), c), d)| a + 2.0 * (b + c) + d);
-        let moved = state.displacement.iter_mut().chain(&mut state.velocity);
-        moved.zip(rates).for_each(|(to, rate)| *to += h / 6.0 * rate);
-        self.trial.copy_from_slice(&state.displacement);
-        self.forces(state);
-        self.keep(state);
+    /// Takes the next step.
+    pub(super) fn advance(&mut self) {
+        swap(&mut self.begin, &mut self.end);
+        let (h, at) = (self.step, 2 * (self.taken % self.steps));
+        let Self { equations, begin, stages: [a, b, c], end, .. } = self;
+        equations.follow(begin, 0.5 * h, begin, a, at + 1);
+        equations.follow(begin, 0.5 * h, a, b, at + 1);
+        equations.follow(begin, h, b, c, at + 2);
+        equations.conclude(begin, h / 6.0, [a, b, c], end, at + 2);
         self.taken += 1;
     }
 
-    /// State at a `share` of the step from `before` to `after`: cubic motion, forces by the return
-    /// map.
-    #[must_use]
-    pub fn between(&mut self, before: &State, after: &State, share: f64) -> State {
+    /// The motion at a `share` of the last step: cubic, with forces by the return map.
+    pub(super) fn within(&mut self, share: f64) -> &Stage {
         let (h, s) = (self.step, share);
-        let mut state = before.clone();
-        for j in 0..self.system.modes() {
-            let (x_0, v_0) = (before.displacement[j], h * before.velocity[j]);
-            let (x_1, v_1) = (after.displacement[j], h * after.velocity[j]);
-            let rise = x_1 - x_0;
-            let (square, cube) = (3.0 * rise - 2.0 * v_0 - v_1, v_0 + v_1 - 2.0 * rise);
-            state.displacement[j] = x_0 + s * (v_0 + s * (square + s * cube));
-            state.velocity[j] = (v_0 + s * (2.0 * square + 3.0 * s * cube)) / h;
-        }
-        self.trial.copy_from_slice(&state.displacement);
-        self.refer_to(&before.displacement);
-        self.forces(before);
-        self.keep(&mut state);
-        state
-    }
-
-    /// Keeps the displacements of the contacts from which forces change.
-    fn refer_to(&mut self, displacement: &[f64]) {
-        for (point, u) in self.reference.iter_mut().enumerate() {
-            *u = dot(self.system.contact_shape(point), displacement);
-        }
-    }
-
-    /// Takes the contact forces at the trial displacements over, with what the laws remember.
-    fn keep(&self, state: &mut State) {
-        state.force.copy_from_slice(&self.force);
-        state.memory.copy_from_slice(&self.memory);
-    }
-
-    /// Contact forces at the trial displacements, from those at the start of the step.
-    fn forces(&mut self, state: &State) {
-        self.force.copy_from_slice(&state.force);
-        self.memory.clone_from(&state.memory);
-        for (point, u) in self.reached.iter_mut().enumerate() {
-            *u = dot(self.system.contact_shape(point), &self.trial);
-        }
-        for body in self.system.bodies() {
-            let points = body.points.clone();
-            body.law.march(
-                &self.reference[points.clone()],
-                &self.reached[points.clone()],
-                &mut self.memory[body.memory.clone()],
-                &mut self.force[points],
-            );
-        }
-    }
-
-    /// Accelerations at the trial displacements and the velocities of a stage.
-    fn accelerations(&mut self, stage: usize, half_step: usize) {
-        let modes = self.system.modes();
-        let (velocity, rates) = self.stages[stage].split_at_mut(modes);
-        let load = &self.loads[half_step * modes..(half_step + 1) * modes];
-        let elastic = self.system.omega_squared().iter().zip(&self.trial);
-        for ((rate, load), (w, x)) in rates.iter_mut().zip(load).zip(elastic) {
-            *rate = load - w * x;
-        }
-        self.system.add_damping(velocity, -1.0, rates);
-        for (point, f) in self.force.iter().enumerate() {
-            for (rate, b) in rates.iter_mut().zip(self.system.contact_shape(point)) {
-                *rate -= b * f;
+        let ends = self.begin.modes.iter().zip(&self.end.modes);
+        for (to, (from, end)) in self.within.modes.iter_mut().zip(ends) {
+            for i in 0..LANES {
+                let (x_0, v_0) = (from.x[i], h * from.v[i]);
+                let (x_1, v_1) = (end.x[i], h * end.v[i]);
+                let rise = x_1 - x_0;
+                let (square, cube) = (3.0 * rise - 2.0 * v_0 - v_1, v_0 + v_1 - 2.0 * rise);
+                to.x[i] = x_0 + s * (v_0 + s * (square + s * cube));
+                to.v[i] = (v_0 + s * (2.0 * square + 3.0 * s * cube)) / h;
             }
         }
+        self.equations.act(&self.begin, &mut self.within);
+        &self.within
     }
 }
 
-/// Where a rate leads from some values over a length.
-fn go_on(to: &mut [f64], from: &[f64], length: f64, rate: &[f64]) {
-    for ((to, from), rate) in to.iter_mut().zip(from).zip(rate) {
-        *to = from + length * rate;
+impl Stage {
+    /// Displacement and velocity of a shape.
+    pub(super) fn along(&self, shape: &[Lanes]) -> [f64; 2] {
+        [dot(shape, &self.modes, |own| &own.x), dot(shape, &self.modes, |own| &own.v)]
+    }
+
+    /// Whether every number is finite and of a size whose square is.
+    pub(super) fn is_bounded(&self) -> bool {
+        let numbers = self.modes.iter().flat_map(|own| own.x.iter().chain(&own.v));
+        numbers.fold(true, |all, number| all & (number.abs() < 1e100))
+    }
+
+    /// Gives a state this motion.
+    pub(super) fn write(&self, state: &mut State) {
+        let [x, v, force] = state.parts();
+        x.iter_mut().zip(self.modes.iter().flat_map(|own| own.x)).for_each(|(to, x)| *to = x);
+        v.iter_mut().zip(self.modes.iter().flat_map(|own| own.v)).for_each(|(to, v)| *to = v);
+        force.copy_from_slice(&self.force);
+        state.memory.copy_from_slice(&self.memory);
+    }
+}
+
+impl<'a> Equations<'a> {
+    fn new(system: &'a ModalSystem, steps: usize) -> Self {
+        let modes = system.modes();
+        let loads = (0..=2 * steps).flat_map(|i| {
+            let mut load = vec![0.0; modes];
+            system.add_load(TAU * (i % (2 * steps)) as f64 / (2 * steps) as f64, 1.0, &mut load);
+            lanes(&load)
+        });
+        let diagonal = system.is_diagonally_damped();
+        let column = |j: usize| (0..modes).map(move |i| system.damping.entry(i, j)).collect();
+        let columns: Vec<Vec<f64>> = (0..modes).map(column).collect();
+        let damping: Vec<f64> =
+            (0..modes).map(|j| if diagonal { columns[j][j] } else { 0.0 }).collect();
+        let own = lanes(system.omega_squared()).into_iter().zip(lanes(&damping));
+        let slider = |body: &Body| body.slider().map(|slider| (body.points.start, slider));
+        let bodies = system.bodies().iter();
+        Self {
+            own: own.map(|(w, c)| [w, c]).collect(),
+            mutual: columns.iter().filter(|_| !diagonal).map(|one| lanes(one)).collect(),
+            loads: loads.collect(),
+            shapes: (0..system.points()).flat_map(|i| lanes(system.contact_shape(i))).collect(),
+            sliders: bodies.clone().filter_map(slider).collect(),
+            others: bodies.filter(|body| body.slider().is_none()).collect(),
+        }
+    }
+
+    /// A stage where some rates lead from the start of the step over a length.
+    fn follow(&self, begin: &Stage, length: f64, rates: &Stage, to: &mut Stage, half_step: usize) {
+        let own = self.own.iter().zip(&self.loads[half_step * self.own.len()..]);
+        let known = begin.modes.iter().zip(&rates.modes).zip(own);
+        for (to, ((from, rate), (own, load))) in to.modes.iter_mut().zip(known) {
+            to.x = from_fn(|i| from.x[i] + length * rate.v[i]);
+            to.v = from_fn(|i| from.v[i] + length * rate.a[i]);
+            to.accelerate(own, load);
+        }
+        self.act(begin, to);
+    }
+
+    /// The end of a step, where the rates of all stages lead, of which a sixth of the step is the weight.
+    fn conclude(
+        &self,
+        begin: &Stage,
+        sixth: f64,
+        [a, b, c]: [&Stage; 3],
+        to: &mut Stage,
+        half_step: usize,
+    ) {
+        let own = self.own.iter().zip(&self.loads[half_step * self.own.len()..]);
+        let known = begin.modes.iter().zip(&a.modes).zip(&b.modes).zip(&c.modes).zip(own);
+        for (to, ((((from, a), b), c), (own, load))) in to.modes.iter_mut().zip(known) {
+            to.x = from_fn(|i| from.x[i] + sixth * (from.v[i] + 2.0 * (a.v[i] + b.v[i]) + c.v[i]));
+            to.v = from_fn(|i| from.v[i] + sixth * (from.a[i] + 2.0 * (a.a[i] + b.a[i]) + c.a[i]));
+            to.accelerate(own, load);
+        }
+        self.act(begin, to);
+    }
+
+    /// Contact forces at the displacements of a stage, from those at the start of the step, and what they
+    /// and other modes add to the accelerations.
+    fn act(&self, begin: &Stage, at: &mut Stage) {
+        let blocks = at.modes.len();
+        for (j, column) in self.mutual.iter().enumerate() {
+            let v = at.modes[j / LANES].v[j % LANES];
+            subtract(&mut at.modes, column, v);
+        }
+        for (point, slider) in &self.sliders {
+            let (point, shape) = (*point, self.shape(*point, blocks));
+            let u = dot(shape, &at.modes, |own| &own.x);
+            let mut force = [begin.force[point]];
+            slider.increment(&[begin.contacts[point]], &[u], &mut force, None);
+            (at.contacts[point], at.force[point]) = (u, force[0]);
+            subtract(&mut at.modes, shape, force[0]);
+        }
+        for body in &self.others {
+            let (points, kept) = (body.points.clone(), body.memory.clone());
+            for point in points.clone() {
+                at.contacts[point] = dot(self.shape(point, blocks), &at.modes, |own| &own.x);
+            }
+            let (force, memory) = (&mut at.force[points.clone()], &mut at.memory[kept.clone()]);
+            force.copy_from_slice(&begin.force[points.clone()]);
+            memory.copy_from_slice(&begin.memory[kept]);
+            let [before, after] =
+                [&begin.contacts, &at.contacts].map(|contacts| &contacts[points.clone()]);
+            body.law.march(before, after, memory, force);
+            for point in points {
+                subtract(&mut at.modes, self.shape(point, blocks), at.force[point]);
+            }
+        }
+    }
+
+    fn shape(&self, point: usize, blocks: usize) -> &[Lanes] {
+        &self.shapes[point * blocks..(point + 1) * blocks]
+    }
+}
+
+impl Modes {
+    /// Accelerations by own stiffness, own damping and loads.
+    fn accelerate(&mut self, [w, c]: &[Lanes; 2], load: &Lanes) {
+        self.a = from_fn(|i| load[i] - w[i] * self.x[i] - c[i] * self.v[i]);
+    }
+}
+
+/// Numbers of modes, side by side.
+pub(super) fn lanes(values: &[f64]) -> Vec<Lanes> {
+    let block = |own: &[f64]| from_fn(|i| own.get(i).copied().unwrap_or(0.0));
+    values.chunks(LANES).map(block).collect()
+}
+
+fn dot(shape: &[Lanes], modes: &[Modes], of: impl Fn(&Modes) -> &Lanes) -> f64 {
+    let mut sums = [0.0; LANES];
+    for (b, own) in shape.iter().zip(modes) {
+        let x = of(own);
+        for i in 0..LANES {
+            sums[i] += b[i] * x[i];
+        }
+    }
+    (sums[0] + sums[2]) + (sums[1] + sums[3])
+}
+
+/// Takes some factor times a shape off the accelerations.
+fn subtract(modes: &mut [Modes], shape: &[Lanes], factor: f64) {
+    for (own, b) in modes.iter_mut().zip(shape) {
+        for i in 0..LANES {
+            own.a[i] -= b[i] * factor;
+        }
     }
 }

@@ -57,8 +57,8 @@ pub fn transient(
     let mut integrator = match settings.scheme {
         Scheme::Exact => Integrator::Exact(Flow::new(&system, settings.omega).watched(&ended)),
         Scheme::RungeKutta(steps) => {
-            let mut scheme = RungeKutta::new(&system, settings.omega, steps);
-            scheme.settle(&mut state);
+            let scheme = RungeKutta::new(&system, settings.omega, steps, &state);
+            scheme.end().write(&mut state);
             Integrator::RungeKutta(scheme)
         }
     };
@@ -78,7 +78,9 @@ pub fn transient(
         let passed = match &mut integrator {
             Integrator::Exact(flow) => output.follow(flow, &mut state, begin, &mut history),
             Integrator::RungeKutta(scheme) => {
-                output.step_through(scheme, &mut state, begin, &mut history, &go_on)
+                let passed = output.step_through(scheme, begin, &mut history, &go_on);
+                scheme.end().write(&mut state);
+                passed
             }
         };
         match passed {
