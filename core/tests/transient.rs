@@ -5,8 +5,8 @@
 mod common;
 
 use common::passive::passive_system;
-use common::{beam_pair, snecma_beam, System};
-use faer::mat;
+use common::{beam_pair, chain, snecma_beam, System};
+use faer::{mat, Mat};
 use proptest::prelude::*;
 use stickslip_core::motion::{transient, Halt, History, Scheme, TransientSettings};
 use stickslip_core::orbit::{OrbitSettings, PeriodicOrbits};
@@ -41,6 +41,29 @@ fn runge_kutta_approaches_the_exact_flow_from_rest() {
         }
         // Kinks of the force cost all but two orders.
         assert!(errors[1] < 1e-5 && errors[1] < errors[0] / 8.0, "{errors:?}");
+    }
+}
+
+/// Without slip the error falls with the fourth power of the step, whatever number of modes there is and
+/// however they damp each other.
+#[test]
+fn runge_kutta_is_of_fourth_order_while_contacts_stick() {
+    for dofs in [1, 3, 4, 6, 9] {
+        let mass = Mat::from_fn(dofs, dofs, |i, j| f64::from(u8::from(i == j)));
+        let stiffness = chain::stiffness(&vec![100.0; dofs]);
+        let mut damping = faer::Scale(0.2) * &mass;
+        damping[(0, 0)] = 2.0;
+        let dampers = vec![(0, None, 50.0, f64::INFINITY), (dofs - 1, None, 20.0, f64::INFINITY)];
+        let forces = vec![(dofs - 1, 1, 1.0, 0.3)];
+        let system = System { mass, damping, stiffness, dampers, forces };
+        let exact = run(&system, &settings(7.0, Scheme::Exact, 3), None);
+        let errors = [128, 256].map(|steps| {
+            let other = run(&system, &settings(7.0, Scheme::RungeKutta(steps), 3), None);
+            difference(&exact.trace.displacement, &other.trace.displacement)
+                .max(difference(&exact.trace.force, &other.trace.force))
+        });
+        let order = (errors[0] / errors[1]).log2();
+        assert!(errors[1] < 1e-5 && (3.5..4.5).contains(&order), "{dofs}: {errors:?}, {order}");
     }
 }
 

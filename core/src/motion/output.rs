@@ -139,13 +139,10 @@ impl<'a> Output<'a> {
         let kept = history.trace.time.len();
         let h = scheme.step();
         let mut sample = 1;
-        let mut range = vec![[f64::INFINITY, f64::NEG_INFINITY]; self.shapes.len()];
-        let mut ends = vec![[0.0; 4]; self.shapes.len()];
         let shapes: Vec<Vec<Lanes>> = self.shapes.iter().map(|shape| lanes(shape)).collect();
-        for (ends, shape) in ends.iter_mut().zip(&shapes) {
-            let [x, v] = scheme.end().along(shape);
-            ends[2..].copy_from_slice(&[x, h * v]);
-        }
+        let mut last: Vec<[f64; 2]> =
+            shapes.iter().map(|shape| scheme.end().along(shape)).collect();
+        let mut range: Vec<[f64; 2]> = last.iter().map(|[x, _]| [*x, *x]).collect();
         for index in 0..steps {
             if index % LOOK == LOOK - 1 && !progress() {
                 self.truncate(&mut history.trace, kept);
@@ -157,10 +154,10 @@ impl<'a> Output<'a> {
                 history.range.extend(range);
                 return Err(Halt::Unbounded);
             }
-            for ((ends, shape), range) in ends.iter_mut().zip(&shapes).zip(&mut range) {
-                let [x, v] = end.along(shape);
-                *ends = [ends[2], ends[3], x, h * v];
-                widen_by_cubic(ends, range);
+            for ((last, shape), range) in last.iter_mut().zip(&shapes).zip(&mut range) {
+                let now = end.along(shape);
+                widen_by_cubic([*last, now], h, range);
+                *last = now;
             }
             while sample <= samples && sample * steps <= (index + 1) * samples {
                 let share = (sample * steps) as f64 / samples as f64 - index as f64;
@@ -350,18 +347,17 @@ impl Extremes {
     }
 }
 
-/// Widens a range by the cubic with values and slopes `[x_0, x_0', x_1, x_1']` at the ends of the
-/// unit interval.
-fn widen_by_cubic([x_0, v_0, x_1, v_1]: &[f64; 4], range: &mut [f64; 2]) {
+/// Widens a range, which has the first of two displacements, by the second and by the cubic between them
+/// that their velocities give over a step of length h.
+fn widen_by_cubic([[x_0, v_0], [x_1, v_1]]: [[f64; 2]; 2], h: f64, range: &mut [f64; 2]) {
     let mut include = |value: f64| {
         range[0] = range[0].min(value);
         range[1] = range[1].max(value);
     };
-    include(*x_0);
-    include(*x_1);
-    if (*v_0 > 0.0) != (*v_1 > 0.0) {
-        let rise = x_1 - x_0;
-        let cubic = [*x_0, *v_0, 3.0 * rise - 2.0 * v_0 - v_1, v_0 + v_1 - 2.0 * rise];
+    include(x_1);
+    if (v_0 > 0.0) != (v_1 > 0.0) {
+        let (rise, v_0, v_1) = (x_1 - x_0, h * v_0, h * v_1);
+        let cubic = [x_0, v_0, 3.0 * rise - 2.0 * v_0 - v_1, v_0 + v_1 - 2.0 * rise];
         let slope = [cubic[1], 2.0 * cubic[2], 3.0 * cubic[3]];
         let mut zeros = Vec::new();
         sign_changes(&slope, &mut zeros);

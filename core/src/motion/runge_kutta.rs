@@ -142,8 +142,11 @@ impl Stage {
 
     /// Whether every number is finite and of a size whose square is.
     pub(super) fn is_bounded(&self) -> bool {
-        let numbers = self.modes.iter().flat_map(|own| own.x.iter().chain(&own.v));
-        numbers.fold(true, |all, number| all & (number.abs() < 1e100))
+        let mut sizes = [0.0; LANES];
+        for own in &self.modes {
+            sizes = from_fn(|i| sizes[i] + (own.x[i].abs() + own.v[i].abs()));
+        }
+        sizes.iter().sum::<f64>() < 1e100
     }
 
     /// Gives a state this motion.
