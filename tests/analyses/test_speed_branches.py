@@ -55,8 +55,8 @@ def test_branch_of_a_model_that_changes():
 def test_other_contacts_begin_without_a_start():
     def model(speed):
         one = hardening(speed)
-        contacts = one.contacts if speed < 1.0 else [*one.contacts, ss.Stop("x", stiffness=1.0, gap=9.0)]
-        return ss.Model(one.structure, contacts, one.forces)
+        stops = [ss.Stop("x", stiffness=1.0, gap=9.0)] if speed > 1.0 else []
+        return ss.Model(one.structure, [*one.contacts, *stops], one.forces)
 
     found = ss.speed_response(model, [0.9, 1.1], engine_order=ORDER, dof="x")
     alone = ss.speed_response(model, [1.1], engine_order=ORDER, dof="x")
