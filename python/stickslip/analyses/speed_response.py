@@ -107,7 +107,8 @@ def _last_motion(found: list[ForcedResponse]) -> Complex | None:
     """Return the contact displacements at the speed before, if it was solved."""
     if not found or not found[-1].converged[0]:
         return None
-    return found[-1].arrays.contact_displacement[0].T
+    last: Complex = found[-1].arrays.contact_displacement[0]
+    return last.T
 
 
 def _order(model: Model, given: float | None) -> float:
