@@ -177,7 +177,7 @@ def _integration(
 
 @reproduces(
     "table-4.1",
-    """Runge-Kutta takes 200 to 1000 times as long as harmonic balance for the beam, although both
+    """Runge-Kutta takes 100 to 600 times as long as harmonic balance for the beam, although both
     are compiled here; in print 170 to 2000 times. The open blade, with less damping, takes
     thousands of periods to settle, and the factors are larger. Newton's method with the exact
     tangent needs fewer iterations than Broyden's.""",
