@@ -23,8 +23,6 @@ pub(super) struct RungeKutta<'a> {
     begin: Stage,
     stages: [Stage; 3],
     end: Stage,
-    /// The motion within the last step.
-    within: Stage,
     /// Steps taken since the start.
     pub(super) taken: usize,
 }
@@ -81,7 +79,6 @@ impl<'a> RungeKutta<'a> {
             steps,
             step: TAU / omega / steps as f64,
             stages: from_fn(|_| begin.clone()),
-            within: begin.clone(),
             begin,
             end,
             taken: 0,
@@ -118,8 +115,10 @@ impl<'a> RungeKutta<'a> {
     /// The motion at a `share` of the last step: cubic, with forces by the return map.
     pub(super) fn within(&mut self, share: f64) -> &Stage {
         let (h, s) = (self.step, share);
+        // The stages of a step that has been taken are not needed any more.
+        let [within, ..] = &mut self.stages;
         let ends = self.begin.modes.iter().zip(&self.end.modes);
-        for (to, (from, end)) in self.within.modes.iter_mut().zip(ends) {
+        for (to, (from, end)) in within.modes.iter_mut().zip(ends) {
             for i in 0..LANES {
                 let (x_0, v_0) = (from.x[i], h * from.v[i]);
                 let (x_1, v_1) = (end.x[i], h * end.v[i]);
@@ -129,8 +128,8 @@ impl<'a> RungeKutta<'a> {
                 to.v[i] = (v_0 + s * (2.0 * square + 3.0 * s * cube)) / h;
             }
         }
-        self.equations.act(&self.begin, &mut self.within);
-        &self.within
+        self.equations.act(&self.begin, within);
+        within
     }
 }
 
@@ -271,9 +270,7 @@ fn dot(shape: &[Lanes], modes: &[Modes], of: impl Fn(&Modes) -> &Lanes) -> f64 {
     let mut sums = [0.0; LANES];
     for (b, own) in shape.iter().zip(modes) {
         let x = of(own);
-        for i in 0..LANES {
-            sums[i] += b[i] * x[i];
-        }
+        sums = from_fn(|i| sums[i] + b[i] * x[i]);
     }
     (sums[0] + sums[2]) + (sums[1] + sums[3])
 }
@@ -281,8 +278,6 @@ fn dot(shape: &[Lanes], modes: &[Modes], of: impl Fn(&Modes) -> &Lanes) -> f64 {
 /// Takes some factor times a shape off the accelerations.
 fn subtract(modes: &mut [Modes], shape: &[Lanes], factor: f64) {
     for (own, b) in modes.iter_mut().zip(shape) {
-        for i in 0..LANES {
-            own.a[i] -= b[i] * factor;
-        }
+        own.a = from_fn(|i| own.a[i] - b[i] * factor);
     }
 }
