@@ -8,9 +8,13 @@ use common::snecma_beam;
 use faer::{mat, Mat};
 use stickslip_core::balance::HarmonicChoice;
 use stickslip_core::contact::Jenkins;
-use stickslip_core::model::{Contact, Model, NegativeDamping, ParameterMode, Variation};
-use stickslip_core::orbit::{limit_cycles, ChangeKind, Cycle, CycleSettings, LimitCycles};
-use stickslip_core::solve::End;
+use stickslip_core::model::{
+    Contact, FlutterModel, Model, NegativeDamping, ParameterMode, Variation,
+};
+use stickslip_core::orbit::{
+    limit_cycles, ChangeKind, Cycle, CycleOrbits, CycleSettings, LimitCycles, OrbitCurve,
+};
+use stickslip_core::solve::{at_parameter, End};
 use stickslip_core::structure::Structure;
 use stickslip_core::Error;
 
@@ -230,6 +234,30 @@ fn harmonic_balance_passes_all_folds_of_the_first_mode() {
     let cycles = follow(&beam(), &settings);
     close(cycles.limit.unwrap().value, 5.1690, 1e-3);
     assert_eq!(cycles.ends, [End::Range, End::Range]);
+}
+
+/// At a given ratio the flow passes along the orbit once per step of Newton's method, and once at its start.
+#[test]
+fn multipliers_take_no_passes_of_their_own() {
+    let (model, negative) = beam();
+    let settings = CycleSettings {
+        values: Some(vec![1.0]),
+        harmonics: HarmonicChoice::Fixed(31),
+        ..CycleSettings::default()
+    };
+    let found = follow(&(model.clone(), negative.clone()), &settings);
+    let negative = NegativeDamping::Whole(negative);
+    let family = FlutterModel::new(&model, negative, Variation::Ratio, 1.0).unwrap();
+    let orbits = CycleOrbits::new(&family).unwrap().unwrap();
+    let cycle = found.cycles.iter().find(|cycle| cycle.closed && !cycle.slipping).unwrap();
+    let scale = found.stuck_omega;
+    let start = orbits.unknowns(&cycle.response, cycle.value, scale, 1).unwrap();
+    let mut curve = OrbitCurve::new(&orbits, scale, &start, &|| false);
+    let (z, steps) = at_parameter(&mut curve, &start, cycle.value, 12).unwrap();
+    let (multipliers, _) = curve.multipliers(&z).unwrap();
+    assert_eq!([curve.flows, curve.matrices], [steps + 1; 2]);
+    // They are those of the whole analysis, over half a period.
+    close(multipliers[0].norm_sqr(), cycle.multipliers[0].norm(), 1e-9);
 }
 
 #[test]

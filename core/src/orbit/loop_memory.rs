@@ -22,6 +22,9 @@ const PLACES: usize = 1 + REVERSALS;
 /// What is known of a span of the motion, of each contact.
 #[derive(Debug, Clone, Default)]
 struct Piece {
+    /// The state that it begins with, and of each contact the numbers of it that its reversals are made of.
+    start: Option<State>,
+    kept: Vec<Vec<usize>>,
     /// Displacements of its reversals \[m\], and at its end.
     turns: Vec<Vec<f64>>,
     end: Vec<f64>,
@@ -30,7 +33,7 @@ struct Piece {
 }
 
 /// The memory of all contacts without sliders.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct LoopMemory {
     half_wave: bool,
     residual: Residual,
@@ -41,9 +44,6 @@ pub(super) struct LoopMemory {
     curves: Vec<LoadingCurve>,
     /// Factor on the displacements of each contact: their squares are energies.
     scale: Vec<f64>,
-    start: Option<State>,
-    /// Of each contact, the numbers of the start that its reversals are made of.
-    kept: Vec<Vec<usize>>,
     /// The piece that is followed, of so many.
     piece: usize,
     count: usize,
@@ -67,8 +67,6 @@ impl LoopMemory {
             parts: 1,
             scale: curves.iter().map(root).collect(),
             curves,
-            start: None,
-            kept: Vec::new(),
             piece: 0,
             count: 1,
             pieces: vec![Piece::default()],
@@ -137,10 +135,9 @@ impl LoopMemory {
         if self.scale.is_empty() {
             return;
         }
-        self.kept = self.recall(state, system, unknowns);
-        self.start = Some(state.clone());
-        let turns = vec![Vec::new(); self.scale.len()];
-        self.pieces[self.piece] = Piece { turns, ..Piece::default() };
+        let kept = self.recall(state, system, unknowns);
+        let (start, turns) = (Some(state.clone()), vec![Vec::new(); self.scale.len()]);
+        self.pieces[self.piece] = Piece { start, kept, turns, ..Piece::default() };
     }
 
     /// Follows the flow over the span.
@@ -297,13 +294,14 @@ impl LoopMemory {
         force: &[f64],
         known: &mut Propagators,
     ) -> Mat<f64> {
-        let Some(start) = &self.start else {
+        let Piece { start, kept, .. } = &self.pieces[self.piece];
+        let Some(start) = start else {
             return coordinates.along(phases, held, force, &mut LoopDisturbance::default(), known);
         };
         let (system, size) = (coordinates.system(), coordinates.size());
         // The disturbances are of displacements, the unknowns have factors.
         let weight = coordinates.weight();
-        let mut loops = LoopDisturbance::new(system, start, &self.kept, size, weight);
+        let mut loops = LoopDisturbance::new(system, start, kept, size, weight);
         let motion = coordinates.along(phases, held, force, &mut loops, known);
         let all = size + Self::places(system);
         let mut matrix = Mat::zeros(all, all);

@@ -9,8 +9,9 @@
 
 use super::loop_memory::LoopMemory;
 use super::shooting::Shooting;
+use crate::contact::PointState;
 use crate::model::Model;
-use crate::motion::{ContactState, ModalSystem};
+use crate::motion::{ContactState, LinearPhase, ModalSystem};
 use crate::solve::System;
 use faer::{c64, Mat};
 
@@ -29,10 +30,20 @@ pub(super) struct Segment {
     pub(super) image: Vec<f64>,
     /// Rate of the coordinates at its end, not mirrored.
     pub(super) rate: Vec<f64>,
-    /// Derivative of the image in the start; empty unless asked for.
+    /// Derivative of the image in the start; empty until it is asked for.
     pub(super) derivative: Mat<f64>,
     /// Points that have slipped.
     pub(super) slipped: Vec<bool>,
+    course: Course,
+}
+
+/// What the flow has passed on its way, of which the derivative is made.
+#[derive(Default)]
+struct Course {
+    phases: Vec<LinearPhase>,
+    /// What held the forces at the start, and these.
+    held: Vec<PointState>,
+    begun: Vec<f64>,
 }
 
 /// Follows the motion over all segments from their start states, one after the
@@ -41,7 +52,6 @@ pub(super) fn follow(
     member: &Member<'_>,
     shooting: &mut Shooting<'_>,
     starts: &[f64],
-    derivatives: bool,
 ) -> Option<Vec<Segment>> {
     let size = shooting.size();
     let count = starts.len() / size;
@@ -54,40 +64,70 @@ pub(super) fn follow(
         let mut rate = shooting.coordinates.rate(state, &regime);
         // Reversals stay as they are.
         rate.resize(size, 0.0);
-        let derivative = if derivatives { shooting.derivative() } else { Mat::new() };
-        segments.push(Segment { image, rate, derivative, slipped: shooting.slipped().to_vec() });
+        let slipped = shooting.slipped().to_vec();
+        let course = shooting.course();
+        segments.push(Segment { image, rate, derivative: Mat::new(), slipped, course });
     }
-    let ends = segments.iter_mut().map(|one| (&mut one.image, &mut one.derivative));
-    shooting.join(starts, ends)?;
+    shooting.join(starts, &mut segments)?;
     Some(segments)
 }
 
 impl Shooting<'_> {
+    fn course(&mut self) -> Course {
+        Course {
+            phases: std::mem::take(&mut self.phases),
+            held: std::mem::take(&mut self.held),
+            begun: std::mem::take(&mut self.begun),
+        }
+    }
+
     /// Completes what contacts without sliders remember behind segments that have all been followed, in
-    /// the image and the derivative of each.
-    fn join<'s>(
-        &mut self,
-        starts: &[f64],
-        segments: impl ExactSizeIterator<Item = (&'s mut Vec<f64>, &'s mut Mat<f64>)>,
-    ) -> Option<()> {
+    /// the image of each.
+    fn join(&mut self, starts: &[f64], segments: &mut [Segment]) -> Option<()> {
         let (size, count) = (self.coordinates.size(), segments.len());
-        if count == 1 || LoopMemory::places(self.coordinates.system()) == 0 {
+        if !self.joins(count) {
             return Some(());
         }
         self.memory.join()?;
         let all = System::size(self);
-        let segments = segments.zip(starts.chunks_exact(all)).enumerate();
-        for (number, ((image, derivative), start)) in segments {
-            let side = if self.symmetric && number + 1 == count { -1.0 } else { 1.0 };
+        for (number, (one, start)) in segments.iter_mut().zip(starts.chunks_exact(all)).enumerate()
+        {
+            let side = self.side(number, count);
             let numbers = self.memory.behind(number, start);
-            image[size..].iter_mut().zip(numbers).for_each(|(to, own)| *to = side * own);
-            if derivative.nrows() > 0 {
-                self.memory.derive(number, derivative);
-                let mut rows = derivative.get_mut(size.., ..);
-                rows *= faer::Scale(side);
-            }
+            one.image[size..].iter_mut().zip(numbers).for_each(|(to, own)| *to = side * own);
         }
         Some(())
+    }
+
+    /// Whether what is remembered behind one of so many segments is that of others, too.
+    fn joins(&self, count: usize) -> bool {
+        count > 1 && LoopMemory::places(self.coordinates.system()) > 0
+    }
+
+    /// Sign of the image of a segment.
+    fn side(&self, number: usize, count: usize) -> f64 {
+        if self.symmetric && number + 1 == count {
+            -1.0
+        } else {
+            1.0
+        }
+    }
+
+    /// Writes the derivatives of segments that have all been followed; the memory is the one that they left.
+    pub(super) fn derive(&mut self, segments: &mut [Segment]) {
+        let (size, count) = (self.coordinates.size(), segments.len());
+        for (number, one) in segments.iter_mut().enumerate() {
+            self.narrow(number, count);
+            let Course { phases, held, begun } = std::mem::take(&mut one.course);
+            (self.phases, self.held, self.begun) = (phases, held, begun);
+            self.derivative = None;
+            one.derivative = self.derivative();
+            if self.joins(count) {
+                self.memory.derive(number, &mut one.derivative);
+                let mut rows = one.derivative.get_mut(size.., ..);
+                rows *= faer::Scale(self.side(number, count));
+            }
+        }
     }
 }
 
@@ -119,7 +159,7 @@ pub(super) fn settle_memory(shooting: &mut Shooting<'_>, starts: &mut [f64]) -> 
     }
     shooting.memory.join()?;
     for number in 0..count {
-        let side = if shooting.symmetric && number + 1 == count { -1.0 } else { 1.0 };
+        let side = shooting.side(number, count);
         let next = (number + 1) % count * all;
         let numbers = shooting.memory.settled(number);
         let own = starts[next + size..next + all].iter_mut();

@@ -36,7 +36,7 @@ pub(super) struct Shooting<'a> {
     pub(super) phases: Vec<LinearPhase>,
     pub(super) held: Vec<PointState>,
     /// The forces at the start.
-    begun: Vec<f64>,
+    pub(super) begun: Vec<f64>,
     pub(super) slipped: Vec<bool>,
     /// Steps of the flow that it took.
     steps: usize,
@@ -45,7 +45,7 @@ pub(super) struct Shooting<'a> {
     /// State after the span.
     pub(super) end: Option<State>,
     /// Derivative of the image, and whether it is that of an evaluation before the last one.
-    derivative: Option<Mat<f64>>,
+    pub(super) derivative: Option<Mat<f64>>,
     closing: Option<Closing>,
     earlier: bool,
     /// Unknowns, image and points that have slipped of the last evaluation.

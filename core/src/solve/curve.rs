@@ -26,6 +26,11 @@ pub trait Curve {
     /// Jacobian at `z` into the first rows of `out`, unknowns × unknowns.
     fn jacobian(&mut self, z: &[f64], out: &mut Mat<f64>);
 
+    /// The same where the parameter stays as it is: its column does not matter.
+    fn jacobian_at_parameter(&mut self, z: &[f64], out: &mut Mat<f64>) {
+        self.jacobian(z, out);
+    }
+
     /// Solves the equations linearised at `z` with one more row, `border x = last of right`; tells the
     /// sign of their determinant, too, or 0 where it is not known. Nothing where they are singular.
     fn solve_bordered(
@@ -37,7 +42,13 @@ pub trait Curve {
     ) -> Option<(Vec<f64>, f64)> {
         let size = z.len();
         let mut matrix = Mat::<f64>::zeros(size, size);
-        self.jacobian(z, &mut matrix);
+        let at = self.parameter(z);
+        let held = border.iter().enumerate().all(|(j, entry)| j == at || *entry == 0.0);
+        if held && right[size - 1] == 0.0 {
+            self.jacobian_at_parameter(z, &mut matrix);
+        } else {
+            self.jacobian(z, &mut matrix);
+        }
         border.iter().enumerate().for_each(|(j, entry)| matrix[(size - 1, j)] = *entry);
         solve(&mut matrix, right, weights)
     }

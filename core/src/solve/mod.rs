@@ -1,6 +1,7 @@
 //! Solvers that know nothing of friction: a system has a residual and a Newton direction.
 
 mod bordered;
+mod bracket;
 mod branch;
 mod broyden;
 mod continuation;
@@ -20,6 +21,7 @@ mod qr;
 mod scaled_lu;
 mod small_dense;
 
+pub(crate) use bracket::Bracket;
 pub(crate) use branch::between;
 pub use branch::{Bounds, Branch, End};
 pub use broyden::{broyden, BroydenEffort, FirstJacobian};

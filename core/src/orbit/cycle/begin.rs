@@ -6,9 +6,10 @@
 //! that its segments may as well begin later.
 
 use super::limit_cycle::OrbitCurve;
+use crate::balance::Point;
 use crate::motion::{FlowEvent, Turn};
 use crate::orbit::segments::settle_memory;
-use crate::solve::norm;
+use crate::solve::{norm, Curve as _};
 
 /// Distance of the begin from the nearest jump, relative to the largest there is, below which it moves.
 const CLOSE: f64 = 0.25;
@@ -18,6 +19,20 @@ const BEGINS: usize = 32;
 const IN_STEP: f64 = 0.2;
 
 impl OrbitCurve<'_> {
+    /// As [`CycleOrbits::unknowns`], in as many segments as the motion needs.
+    ///
+    /// [`CycleOrbits::unknowns`]: super::orbits::CycleOrbits::unknowns
+    pub(super) fn start(&mut self, point: &Point, value: f64) -> Option<Vec<f64>> {
+        let mut z = self.unknowns_of(point, value, 1)?;
+        loop {
+            let suitable = self.suitable_unknowns(&z);
+            if suitable <= z.len() {
+                return self.best_begin(&z).map_or(Some(z.clone()), |by| self.begun(&z, by));
+            }
+            z = self.unknowns_of(point, value, (suitable - 2) / self.state_size()[0])?;
+        }
+    }
+
     /// How much later segments begin best, in lengths of one; nothing where they may stay.
     pub(super) fn best_begin(&self, z: &[f64]) -> Option<f64> {
         if self.state_size()[1] == 0 {

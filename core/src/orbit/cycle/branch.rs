@@ -102,7 +102,6 @@ impl Finder<'_> {
     ) -> Result<LimitCycles, Error> {
         let settings = self.settings;
         let rungs = settings.rungs();
-        let scale = self.onset.mode.omega;
         let last = rungs.len() - 1;
         for (rung, &highest) in rungs.iter().enumerate() {
             let table = self.table(highest);
@@ -152,12 +151,7 @@ impl Finder<'_> {
             let mut out = self.result(&sides, cycles, highest);
             out.profile.evaluations = curve.evaluations;
             if let (Some(orbits), true) = (orbits, settings.stability) {
-                let start = |cycle: &Cycle| {
-                    let wanted = (!interrupted()).then_some(cycle)?;
-                    orbits.start(&wanted.response, wanted.value, scale)
-                };
-                let starts = out.cycles.iter().map(start).collect();
-                judge(&self.judge(orbits, false), starts, &mut out, interrupted, share);
+                judge(self.judge(orbits, None), &mut out, interrupted, share);
             } else if settings.stability && !self.family.is_symmetric() {
                 judge_along(self.family, &mut out, interrupted, share);
             }
@@ -208,18 +202,18 @@ impl Finder<'_> {
                 continue;
             };
             cycles.push(cycle);
-            points.push(Some(z));
+            points.push(z);
         }
         let mut out = self.result(&sides, cycles, self.settings.reported);
         out.profile.evaluations = curve.flows;
         out.profile.factorisations = curve.matrices;
         if self.settings.stability {
-            judge(&self.judge(orbits, true), points, &mut out, interrupted, share);
+            judge(self.judge(orbits, Some(points)), &mut out, interrupted, share);
         }
         Ok(out)
     }
 
-    fn judge<'b>(&self, orbits: &'b CycleOrbits<'b>, exact: bool) -> Judge<'b> {
+    fn judge<'b>(&self, orbits: &'b CycleOrbits<'b>, exact: Option<Vec<Vec<f64>>>) -> Judge<'b> {
         let whole = self.settings.values.is_none();
         Judge { orbits, scale: self.onset.mode.omega, exact, whole }
     }

@@ -17,25 +17,12 @@ use crate::orbit::segments::{
 use crate::orbit::shooting::Shooting;
 use crate::solve::{norm, Curve};
 use faer::{c64, Mat};
+use std::cell::RefCell;
+use std::rc::Rc;
 
 /// Relative step of the central difference in the scalar: motions that grow by orders of magnitude
 /// over a period bend within 1e-5, and rounding stays far below what Newton's method notices.
 const DIFFERENCE: f64 = 1e-7;
-
-impl CycleOrbits<'_> {
-    /// As [`CycleOrbits::unknowns`], in as many segments as the motion needs.
-    pub(super) fn start(&self, point: &Point, value: f64, reference: f64) -> Option<Vec<f64>> {
-        let mut z = self.unknowns(point, value, reference, 1).ok()?;
-        loop {
-            let mut curve = OrbitCurve::new(self, reference, &z, &|| false);
-            let suitable = curve.suitable_unknowns(&z);
-            if suitable <= z.len() {
-                return curve.best_begin(&z).map_or(Some(z.clone()), |by| curve.begun(&z, by));
-            }
-            z = self.unknowns(point, value, reference, (suitable - 2) / self.size()).ok()?;
-        }
-    }
-}
 
 /// Points that slip in one of the segments.
 fn slipped(segments: &[Segment]) -> Vec<bool> {
@@ -50,6 +37,8 @@ fn slipped(segments: &[Segment]) -> Vec<bool> {
 struct Evaluation {
     z: Vec<f64>,
     segments: Vec<Segment>,
+    /// What contacts without sliders remember behind all segments.
+    memory: LoopMemory,
     derivatives: bool,
     /// What contacts that never slip keep over a whole period: it stays as it is, in the place of
     /// equations of the last segment that hold by themselves.
@@ -68,6 +57,8 @@ pub struct OrbitCurve<'a> {
     drift: Vec<f64>,
     size: f64,
     at: Option<Evaluation>,
+    /// The member at the last value of the scalar.
+    member: RefCell<Option<(f64, Rc<Member<'a>>)>>,
     /// Half periods followed so far.
     pub flows: usize,
     /// Transition matrices so far.
@@ -91,6 +82,7 @@ impl<'a> OrbitCurve<'a> {
             drift: Vec::new(),
             size: 1.0,
             at: None,
+            member: RefCell::new(None),
             flows: 0,
             matrices: 0,
         };
@@ -108,6 +100,26 @@ impl<'a> OrbitCurve<'a> {
         [self.orbits.size(), LoopMemory::places(&self.orbits.system)]
     }
 
+    fn member(&self, value: f64) -> Option<Rc<Member<'a>>> {
+        let mut last = self.member.borrow_mut();
+        if let Some((_, member)) = last.as_ref().filter(|(own, _)| *own == value) {
+            return Some(Rc::clone(member));
+        }
+        let member = Rc::new(self.orbits.member(value).ok()?);
+        *last = Some((value, Rc::clone(&member)));
+        Some(member)
+    }
+
+    /// Unknowns from a harmonic balance.
+    pub(super) fn unknowns_of(
+        &self,
+        point: &Point,
+        value: f64,
+        segments: usize,
+    ) -> Option<Vec<f64>> {
+        self.orbits.unknowns(point, value, self.scale, segments).ok()
+    }
+
     /// Has `visit` look at the closing condition of a point.
     pub(super) fn with_shooting<T>(
         &self,
@@ -118,7 +130,7 @@ impl<'a> OrbitCurve<'a> {
         if !(*omega > 0.0 && omega.is_finite() && value.is_finite() && norm(y).is_finite()) {
             return None;
         }
-        let member = self.orbits.member(*value).ok()?;
+        let member = self.member(*value)?;
         let coordinates = Transition::new(&member.system, self.scale);
         let half = self.is_symmetric();
         let mut shooting =
@@ -127,28 +139,33 @@ impl<'a> OrbitCurve<'a> {
         visit(&member, &mut shooting, y)
     }
 
-    /// The flow over all segments, in the order of time.
-    fn segments(&self, z: &[f64], derivatives: bool) -> Option<Vec<Segment>> {
-        self.with_shooting(z, |member, shooting, y| follow(member, shooting, y, derivatives))
-    }
-
     fn evaluate(&mut self, z: &[f64], derivatives: bool) -> bool {
-        let known = self.at.as_ref();
-        if known.is_some_and(|at| at.z == z && (!derivatives || at.derivatives)) {
-            return true;
+        if self.at.as_ref().is_none_or(|at| at.z != z) {
+            self.flows += 1;
+            self.at = self.with_shooting(z, |member, shooting, y| {
+                let segments = follow(member, shooting, y)?;
+                let kept = if self.is_symmetric() {
+                    Vec::new()
+                } else {
+                    shooting.coordinates.conserved(&slipped(&segments))
+                };
+                let (z, memory) = (z.to_vec(), shooting.memory.clone());
+                Some(Evaluation { z, segments, memory, derivatives: false, kept })
+            });
         }
-        self.flows += 1;
-        self.matrices += usize::from(derivatives);
-        self.at = self.with_shooting(z, |member, shooting, y| {
-            let segments = follow(member, shooting, y, derivatives)?;
-            let kept = if self.is_symmetric() {
-                Vec::new()
-            } else {
-                shooting.coordinates.conserved(&slipped(&segments))
-            };
-            Some(Evaluation { z: z.to_vec(), segments, derivatives, kept })
-        });
-        self.at.is_some()
+        let Some(mut at) = self.at.take() else { return false };
+        if derivatives && !at.derivatives {
+            self.matrices += 1;
+            let derived = self.with_shooting(z, |_, shooting, _| {
+                shooting.memory.clone_from(&at.memory);
+                shooting.derive(&mut at.segments);
+                Some(())
+            });
+            at.derivatives = derived.is_some();
+        }
+        let known = at.derivatives || !derivatives;
+        self.at = Some(at);
+        known
     }
 
     /// Rate of the coordinates at a point.
@@ -164,15 +181,18 @@ impl<'a> OrbitCurve<'a> {
 
     /// Multipliers over half a period, mirrored, or over a whole one of no symmetry, without the one of the phase and the neutral ones,
     /// by falling modulus; and the number of the neutral ones.
-    #[must_use]
-    pub fn multipliers(&self, z: &[f64]) -> Option<(Vec<c64>, usize)> {
-        let (mut multipliers, neutral) = self.with_shooting(z, |member, shooting, y| {
-            let segments = follow(member, shooting, y, true)?;
-            let slipped = slipped(&segments);
+    pub fn multipliers(&mut self, z: &[f64]) -> Option<(Vec<c64>, usize)> {
+        if !self.evaluate(z, true) {
+            return None;
+        }
+        let segments = &self.at.as_ref()?.segments;
+        let (mut multipliers, neutral) = self.with_shooting(z, |_, shooting, _| {
+            let slipped = slipped(segments);
             let mut neutral = 0;
-            let reduced = segments.into_iter().map(|mut one| {
-                shooting.hold_origins(&mut one.derivative);
-                let (rest, count) = shooting.without_neutral(&one.derivative, &slipped);
+            let reduced = segments.iter().map(|one| {
+                let mut matrix = one.derivative.clone();
+                shooting.hold_origins(&mut matrix);
+                let (rest, count) = shooting.without_neutral(&matrix, &slipped);
                 neutral = count;
                 rest
             });
@@ -238,23 +258,36 @@ impl Curve for OrbitCurve<'_> {
     }
 
     fn jacobian(&mut self, z: &[f64], out: &mut Mat<f64>) {
+        self.jacobian_at_parameter(z, out);
+        let at = z.len() - 1;
+        let step = DIFFERENCE * z[at].abs().max(f64::MIN_POSITIVE);
+        let images = [step, -step].map(|step| {
+            let mut shifted = z.to_vec();
+            shifted[at] += step;
+            let segments = self.with_shooting(&shifted, follow)?;
+            Some(segments.into_iter().flat_map(|one| one.image).collect::<Vec<f64>>())
+        });
+        self.flows += 2;
+        let [Some(ahead), Some(behind)] = images else {
+            out.fill(f64::NAN);
+            return;
+        };
+        for (row, (ahead, behind)) in ahead.iter().zip(behind).enumerate() {
+            out[(row, at)] = (ahead - behind) / (2.0 * step) / self.size;
+        }
+        for (target, _) in self.at.iter().flat_map(|at| &at.kept) {
+            out[(at - 1 - self.orbits.size() + target, at)] = 0.0;
+        }
+    }
+
+    fn jacobian_at_parameter(&mut self, z: &[f64], out: &mut Mat<f64>) {
         out.fill(0.0);
         if !self.evaluate(z, true) {
             out.fill(f64::NAN);
             return;
         }
         let (all, size) = (z.len() - 2, self.orbits.size());
-        let step = DIFFERENCE * z[all + 1].abs().max(f64::MIN_POSITIVE);
-        let mut shifted = z.to_vec();
-        shifted[all + 1] = z[all + 1] + step;
-        let ahead = self.segments(&shifted, false);
-        shifted[all + 1] = z[all + 1] - step;
-        let behind = self.segments(&shifted, false);
-        self.flows += 2;
-        let (Some(ahead), Some(behind), Some(at)) = (ahead, behind, &self.at) else {
-            out.fill(f64::NAN);
-            return;
-        };
+        let Some(at) = &self.at else { return };
         let count = at.segments.len();
         for (number, one) in at.segments.iter().enumerate() {
             let (first, next) = (number * size, (number + 1) % count * size);
@@ -267,10 +300,6 @@ impl Curve for OrbitCurve<'_> {
                     out[(first + i, first + j)] = one.derivative[(i, j)] / self.size;
                 }
                 out[(first + i, all)] = one.rate[i] * shorter;
-                let change = ahead[number].image[i] - behind[number].image[i];
-                out[(first + i, all + 1)] = change / (2.0 * step) / self.size;
-            }
-            for i in 0..size {
                 out[(first + i, next + i)] -= self.size.recip();
             }
         }

@@ -3,9 +3,10 @@
 use super::limit_cycle::OrbitCurve;
 use super::orbits::CycleOrbits;
 use super::settings::{Change, ChangeKind, LimitCycles};
+use crate::balance::Point;
 use crate::model::FlutterModel;
 use crate::orbit::period_map::PeriodMap;
-use crate::solve::{across, at_parameter, Curve as _};
+use crate::solve::{across, at_parameter, Bracket, Curve as _};
 use faer::c64;
 use std::cell::Cell;
 
@@ -19,8 +20,8 @@ const SAME: f64 = 0.02;
 const MAPPED: f64 = 1e-6;
 /// … and distance of the largest from 1 that decides, in errors.
 const DECIDES: f64 = 3.0;
-/// Halvings of the interval in which stability changes.
-const HALVINGS: usize = 26;
+/// Halvings that narrow the interval in which stability changes as much.
+const HALVINGS: i32 = 26;
 /// Change of the modulus of a multiplier across an interval this short that is a jump.
 const JUMP: f64 = 1e-3;
 /// Angle off the real axis within which a multiplier counts as real.
@@ -40,6 +41,12 @@ pub(super) struct Floquet {
 }
 
 impl Floquet {
+    /// Of the exact orbit next to a harmonic balance.
+    fn beside(curve: &mut OrbitCurve<'_>, point: &Point, value: f64) -> Option<Self> {
+        let start = curve.start(point, value)?;
+        Self::near(curve, &start)
+    }
+
     /// Of the exact orbit next to a start of the same value of the scalar; along the exact flow
     /// from the start if there is none.
     pub(super) fn near(curve: &mut OrbitCurve<'_>, start: &[f64]) -> Option<Self> {
@@ -52,7 +59,7 @@ impl Floquet {
     }
 
     /// Of the orbit at a point of a curve.
-    pub(super) fn of(curve: &OrbitCurve<'_>, z: Vec<f64>, closed: bool) -> Option<Self> {
+    pub(super) fn of(curve: &mut OrbitCurve<'_>, z: Vec<f64>, closed: bool) -> Option<Self> {
         let (span, neutral) = curve.multipliers(&z)?;
         Some(Self { z, span, symmetric: curve.is_symmetric(), neutral, closed })
     }
@@ -74,37 +81,32 @@ pub(super) struct Judge<'a> {
     pub(super) orbits: &'a CycleOrbits<'a>,
     /// Frequency that scales the coordinates of states [rad/s].
     pub(super) scale: f64,
-    /// Whether the points are exact orbits already.
-    pub(super) exact: bool,
+    /// Exact orbits of all cycles, where they are known already.
+    pub(super) exact: Option<Vec<Vec<f64>>>,
     /// Whether they are a whole branch, on which changes of stability can be located.
     pub(super) whole: bool,
 }
 
 /// Multipliers of all cycles, and changes of stability between neighbours on a whole branch.
 pub(super) fn judge(
-    &Judge { orbits, scale, exact, whole }: &Judge<'_>,
-    points: Vec<Option<Vec<f64>>>,
+    Judge { orbits, scale, exact, whole }: Judge<'_>,
     out: &mut LimitCycles,
     interrupted: &dyn Fn() -> bool,
     share: &Cell<f64>,
 ) {
-    let Some(first) = points.iter().flatten().next() else { return };
-    let mut curve = OrbitCurve::new(orbits, scale, first, interrupted);
-    let total = points.len() as f64;
+    let mut curve = OrbitCurve::new(orbits, scale, &[], interrupted);
+    let total = out.cycles.len() as f64;
     let mut known: Vec<(usize, Floquet)> = Vec::new();
-    for (index, point) in points.into_iter().enumerate() {
+    for (index, cycle) in out.cycles.iter_mut().enumerate() {
         share.set(TRACING + (1.0 - TRACING) * index as f64 / total);
         if interrupted() {
             return;
         }
-        let Some(point) = point else { continue };
-        let floquet = if exact {
-            Floquet::of(&curve, point, true)
-        } else {
-            Floquet::near(&mut curve, &point)
+        let floquet = match &exact {
+            Some(points) => Floquet::of(&mut curve, points[index].clone(), true),
+            None => Floquet::beside(&mut curve, &cycle.response, cycle.value),
         };
         let Some(floquet) = floquet else { continue };
-        let cycle = &mut out.cycles[index];
         cycle.multipliers = floquet.multipliers();
         cycle.neutral = floquet.neutral;
         cycle.closed = floquet.closed;
@@ -160,8 +162,8 @@ pub(super) fn judge_along(
     }
 }
 
-/// The change of stability between two neighbouring orbits: located by halving, and named by the
-/// multipliers on either side.
+/// The change of stability between two neighbouring orbits: located by the multiplier that leaves the unit
+/// circle, and named by those on either side.
 fn change(
     curve: &mut OrbitCurve<'_>,
     before: &Floquet,
@@ -169,15 +171,17 @@ fn change(
     position: usize,
 ) -> Change {
     let (mut low, mut high) = (before.clone(), after.clone());
-    for _ in 0..HALVINGS {
-        if curve.interrupted() {
-            break;
-        }
+    let leaving = before.unstable().min(after.unstable());
+    let growth = |one: &Floquet| one.span.get(leaving).map_or(f64::NAN, |m| m.norm().ln());
+    let mut bracket = Bracket::new([growth(before), growth(after)], HALVINGS);
+    while let Some(share) = bracket.next().filter(|_| !curve.interrupted()) {
         let Some((a, b)) = curve.matched(&low.z, &high.z) else { break };
         curve.accept(&a);
-        let Some(z) = across(curve, &a, &b, 0.5) else { break };
+        let Some(z) = across(curve, &a, &b, share) else { break };
         let Some(middle) = Floquet::of(curve, z, true) else { break };
-        if middle.unstable() == before.unstable() {
+        let stays = middle.unstable() == before.unstable();
+        bracket.narrow(share, growth(&middle), stays);
+        if stays {
             low = middle;
         } else {
             high = middle;
