@@ -5,7 +5,8 @@
 
 use super::contact_state::Springs;
 use super::damping::Damping;
-use super::exponential::{exponential, Driven};
+use super::exponential::{exponential, Driven, Function as _};
+use super::few_states::FewStates;
 use super::oscillator::Oscillator;
 use super::quadrature::Quadrature;
 use crate::solve::dot;
@@ -163,8 +164,12 @@ impl Equations {
 
     /// The same of any equations.
     fn whole_exponential(&self, duration: f64) -> Driven {
-        let power = |own: &Driven| Driven::new(self.rates_of(&own.rows, duration));
         let matrix = self.matrix(duration);
+        if let Some(few) = FewStates::of(&matrix) {
+            let whole = exponential(&few, few.squared(), |own| few.times(own));
+            return whole.driven(matrix.rows.nrows(), self.strains.len());
+        }
+        let power = |own: &Driven| Driven::new(self.rates_of(&own.rows, duration));
         let square = power(&matrix);
         exponential(&matrix, square, power)
     }
