@@ -239,15 +239,15 @@ fn harmonic_balance_passes_all_folds_of_the_first_mode() {
 /// At a given ratio the flow passes along the orbit once per step of Newton's method, and once at its start.
 #[test]
 fn multipliers_take_no_passes_of_their_own() {
-    let (model, negative) = beam();
+    let system = beam();
     let settings = CycleSettings {
         values: Some(vec![1.0]),
         harmonics: HarmonicChoice::Fixed(31),
         ..CycleSettings::default()
     };
-    let found = follow(&(model.clone(), negative.clone()), &settings);
-    let negative = NegativeDamping::Whole(negative);
-    let family = FlutterModel::new(&model, negative, Variation::Ratio, 1.0).unwrap();
+    let found = follow(&system, &settings);
+    let negative = NegativeDamping::Whole(system.1.clone());
+    let family = FlutterModel::new(&system.0, negative, Variation::Ratio, 1.0).unwrap();
     let orbits = CycleOrbits::new(&family).unwrap().unwrap();
     let cycle = found.cycles.iter().find(|cycle| cycle.closed && !cycle.slipping).unwrap();
     let scale = found.stuck_omega;

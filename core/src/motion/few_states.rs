@@ -11,6 +11,9 @@ const INPUTS: usize = 4;
 /// As [`Driven`], filled up with zeros.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FewStates {
+    states: usize,
+    /// Of states and inputs.
+    count: usize,
     columns: [[f64; STATES]; STATES + INPUTS],
     kept: f64,
 }
@@ -18,53 +21,58 @@ pub(super) struct FewStates {
 impl FewStates {
     /// Takes a polynomial over; nothing where there is no room.
     pub(super) fn of(driven: &Driven) -> Option<Self> {
-        let (states, all) = (driven.rows.nrows(), driven.rows.ncols());
-        if states > STATES || all - states > INPUTS {
+        let (states, count) = (driven.rows.nrows(), driven.rows.ncols());
+        if states > STATES || count - states > INPUTS {
             return None;
         }
         let mut columns = [[0.0; STATES]; STATES + INPUTS];
-        for j in 0..all {
-            let place = if j < states { j } else { STATES + j - states };
-            columns[place][..states].copy_from_slice(driven.rows.col_as_slice(j));
+        for (j, column) in columns[..count].iter_mut().enumerate() {
+            column[..states].copy_from_slice(driven.rows.col_as_slice(j));
         }
-        Some(Self { columns, kept: driven.kept })
+        Some(Self { states, count, columns, kept: driven.kept })
     }
 
-    /// The same of so many states and inputs.
-    pub(super) fn driven(&self, states: usize, inputs: usize) -> Driven {
-        let place = |j: usize| if j < states { j } else { STATES + j - states };
-        let rows = Mat::from_fn(states, states + inputs, |i, j| self.columns[place(j)][i]);
+    pub(super) fn driven(&self) -> Driven {
+        let rows = Mat::from_fn(self.states, self.count, |i, j| self.columns[j][i]);
         Driven { rows, kept: self.kept }
+    }
+
+    fn columns(&self) -> &[[f64; STATES]] {
+        &self.columns[..self.count]
     }
 }
 
 impl Function for FewStates {
     fn times(&self, other: &Self) -> Self {
-        let mut columns = [[0.0; STATES]; STATES + INPUTS];
-        for (out, factors) in columns.iter_mut().zip(&other.columns) {
-            for (own, factor) in self.columns.iter().zip(factors) {
+        let mut product = Self { columns: [[0.0; STATES]; STATES + INPUTS], ..*self };
+        product.kept = self.kept * other.kept;
+        let own = &self.columns[..self.states];
+        for (j, out) in product.columns[..self.count].iter_mut().enumerate() {
+            for (own, factor) in own.iter().zip(&other.columns[j]) {
                 out.iter_mut().zip(own).for_each(|(out, a)| *out += factor * a);
             }
+            if j >= self.states {
+                let own = &self.columns[j];
+                out.iter_mut().zip(own).for_each(|(out, a)| *out += other.kept * a);
+            }
         }
-        for (out, own) in columns.iter_mut().zip(&self.columns).skip(STATES) {
-            out.iter_mut().zip(own).for_each(|(out, a)| *out += other.kept * a);
-        }
-        Self { columns, kept: self.kept * other.kept }
+        product
     }
 
     fn combined<const N: usize>(constant: f64, factors: [f64; N], functions: [&Self; N]) -> Self {
-        let mut sum = Self { columns: [[0.0; STATES]; STATES + INPUTS], kept: constant };
-        (0..STATES).for_each(|j| sum.columns[j][j] = constant);
+        let none = [[0.0; STATES]; STATES + INPUTS];
+        let mut sum = Self { columns: none, kept: constant, ..*functions[0] };
+        (0..sum.states).for_each(|j| sum.columns[j][j] = constant);
         for (factor, own) in factors.iter().zip(functions).filter(|(factor, _)| **factor != 0.0) {
             sum.kept += factor * own.kept;
-            let columns = sum.columns.as_flattened_mut().iter_mut();
-            columns.zip(own.columns.as_flattened()).for_each(|(out, a)| *out += factor * a);
+            let columns = sum.columns[..own.count].as_flattened_mut().iter_mut();
+            columns.zip(own.columns().as_flattened()).for_each(|(out, a)| *out += factor * a);
         }
         sum
     }
 
     fn norm(&self) -> f64 {
-        self.columns.as_flattened().iter().map(|a| a * a).sum::<f64>().sqrt()
+        self.columns().as_flattened().iter().map(|a| a * a).sum::<f64>().sqrt()
     }
 }
 
@@ -86,7 +94,7 @@ mod tests {
                 let own = matrix(states, inputs, size);
                 let few = FewStates::of(&own).unwrap();
                 let found = exponential(&few, few.squared(), |power| few.times(power));
-                let found = found.driven(states, inputs);
+                let found = found.driven();
                 let expected = exponential(&own, own.squared(), |power| own.times(power));
 
                 let error = (&found.rows - &expected.rows).norm_max();

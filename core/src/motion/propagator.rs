@@ -166,8 +166,7 @@ impl Equations {
     fn whole_exponential(&self, duration: f64) -> Driven {
         let matrix = self.matrix(duration);
         if let Some(few) = FewStates::of(&matrix) {
-            let whole = exponential(&few, few.squared(), |own| few.times(own));
-            return whole.driven(matrix.rows.nrows(), self.strains.len());
+            return exponential(&few, few.squared(), |own| few.times(own)).driven();
         }
         let power = |own: &Driven| Driven::new(self.rates_of(&own.rows, duration));
         let square = power(&matrix);
