@@ -280,7 +280,7 @@ def test_settings():
 
 
 def test_status():
-    assert [status.code for status in ss.Status] == list(range(12))
+    assert [status.code for status in ss.Status] == list(range(13))
     assert all(ss.Status.from_code(status.code) is status for status in ss.Status)
     assert ss.Status.STALLED == "stalled"
     solved = {
@@ -292,7 +292,7 @@ def test_status():
     assert {status for status in ss.Status if status.solved} == solved
     for status in ss.Status:
         assert status.advice.count(". ") == 1
-    for code in (12, -1):
+    for code in (13, -1):
         with pytest.raises(ss.ModelError, match=f"status {code} is unknown"):
             ss.Status.from_code(code)
 

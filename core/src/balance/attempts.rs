@@ -176,7 +176,7 @@ impl ForcedBalance<'_> {
     /// Newton's method from the exact orbit, or from a motion that settles where laws have no events and
     /// no homotopy leads on; whether there is an orbit.
     fn start_again(
-        &self,
+        &mut self,
         equations: &mut Condensed<'_>,
         omega: f64,
         x: &mut Vec<f64>,
@@ -187,6 +187,7 @@ impl ForcedBalance<'_> {
         let exact =
             self.orbit_to_start_from(omega, highest).map(|orbit| orbit.contact_displacement);
         let is_exact = exact.is_some();
+        equations.granted = self.left();
         let settled = || self.rescue.filter(|_| !self.follows())?.settled(omega, highest);
         let Some(amplitudes) = exact.or_else(settled) else { return false };
         let orders = highest + 1;

@@ -41,6 +41,9 @@ impl ForcedBalance<'_> {
         if point.status == PointStatus::Stalled && many() {
             point.status = PointStatus::History;
         }
+        if point.status == PointStatus::Stalled && self.is_spent() {
+            point.status = PointStatus::WorkLimit;
+        }
         Ok(point)
     }
 

@@ -65,7 +65,7 @@ impl ForcedBalance<'_> {
 
     /// The exact orbit with harmonics up to `order` as a start, if it is affordable: where harmonics
     /// are chosen, beside what they cost, and in any case for someone who waits.
-    pub(super) fn orbit_to_start_from(&self, omega: f64, order: usize) -> Option<Point> {
+    pub(super) fn orbit_to_start_from(&mut self, omega: f64, order: usize) -> Option<Point> {
         let contacts = self.model.compliance().contacts();
         let orbits = self.rescue?;
         let price = orbits.price(omega, USUAL_EVENTS * contacts, order)?;
@@ -73,7 +73,17 @@ impl ForcedBalance<'_> {
         if price > LONGEST_WAIT || (chosen && price > self.price(contacts).affordable()) {
             return None;
         }
-        orbits.orbit(omega, order)
+        self.charged(|| orbits.orbit(omega, order))
+    }
+
+    /// What a search for an orbit gives, within what is left of the work of the point, and on its account.
+    fn charged<T>(&mut self, search: impl FnOnce() -> T) -> T {
+        let Some(orbits) = self.rescue else { return search() };
+        orbits.allow(self.left());
+        let before = orbits.work();
+        let found = search();
+        self.profile.work += orbits.work() - before;
+        found
     }
 
     pub(super) fn price(&self, slipping: usize) -> Price<'_> {
@@ -94,10 +104,10 @@ impl ForcedBalance<'_> {
             return None;
         }
         let order = self.orbit_order();
-        let orbit = match of {
+        let orbit = self.charged(|| match of {
             Some(motion) => orbits.orbit_of(motion, solved.omega, order),
             None => orbits.orbit(solved.omega, order),
-        }?;
+        })?;
         let suits = match of {
             _ if self.model.is_monotone() => true,
             Some(_) => self.is_same_motion(solved, &orbit),

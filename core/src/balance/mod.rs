@@ -99,4 +99,12 @@ pub trait ExactOrbits {
     /// Contact displacements of a motion that settles in time where there are no exact orbits, their
     /// amplitudes up to `highest`, contact after contact.
     fn settled(&self, omega: f64, highest: usize) -> Option<Vec<faer::c64>>;
+
+    /// Work of all orbits that were sought so far \[ns\].
+    fn work(&self) -> f64 {
+        0.0
+    }
+
+    /// Has a search from here on take no more work than this, or a little if it is next to none \[ns\].
+    fn allow(&self, _work: f64) {}
 }

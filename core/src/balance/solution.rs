@@ -35,6 +35,9 @@ pub enum PointStatus {
     /// Not solved, though there are exact orbits: contacts that never slip keep one of many tractions, and
     /// which one depends on how the motion was reached.
     History = 10,
+    /// Not solved: the work that a point is granted was spent before any harmonics were solved. 11 is an orbit of
+    /// another motion, which is none here.
+    WorkLimit = 12,
 }
 
 impl PointStatus {
@@ -49,6 +52,7 @@ impl PointStatus {
                 | Self::History
                 | Self::NotComputed
                 | Self::StepsLimit
+                | Self::WorkLimit
         )
     }
 }

@@ -10,13 +10,6 @@ use crate::contact::{ContactLaw, SlipLoad};
 const OF_POINT: f64 = 4e9;
 /// … or so many Newton steps of the lowest level, if these take more.
 const STEPS: f64 = 600.0;
-/// Of a law in closed form, with its turning points, by itself and per coefficient of every component; with its
-/// tangent per entry \[ns\].
-const LAW: f64 = 4000.0;
-const PER_COEFFICIENT: f64 = 300.0;
-const PER_ENTRY: f64 = 4.0;
-/// How many times that of a law that couples components.
-const COUPLED: f64 = 3.0;
 /// Of a march, per sample, and per sample and coefficient, of values and of every row of a tangent \[ns\].
 const PER_SAMPLE: f64 = 300.0;
 const PER_PRODUCT: f64 = 1.5;
@@ -41,18 +34,17 @@ impl Condensed<'_> {
 
 /// Of a law in so many coefficients per component \[ns\].
 fn of_law(law: &dyn ContactLaw, slots: usize, active: bool, tangent: bool) -> f64 {
+    let Some(form) = law.closed_form() else { return 0.0 };
+    let resolved = form.resolves();
+    if resolved == usize::MAX {
+        return form.effort(slots, active && tangent);
+    }
     let components = law.displacements() as f64;
     let coefficients = components * slots as f64;
-    let resolved = law.closed_form().map_or(usize::MAX, |form| form.resolves());
     let rows = if active && tangent { components } else { 0.0 };
-    if resolved < usize::MAX {
-        let samples = 2.0 * (resolved as f64 + 1.0);
-        let steps = (1.0 + rows) * (PER_SAMPLE + PER_PRODUCT * coefficients);
-        return samples * (steps + PER_PROJECTION * rows / components * coefficients.powi(2));
-    }
-    let entries = if active && tangent { coefficients.powi(2) } else { 0.0 };
-    let coupled = if components > 1.0 { COUPLED } else { 1.0 };
-    coupled * (LAW + PER_COEFFICIENT * coefficients + PER_ENTRY * entries)
+    let samples = 2.0 * (resolved as f64 + 1.0);
+    let steps = (1.0 + rows) * (PER_SAMPLE + PER_PRODUCT * coefficients);
+    samples * (steps + PER_PROJECTION * rows / components * coefficients.powi(2))
 }
 
 impl ForcedBalance<'_> {
@@ -89,5 +81,93 @@ impl ForcedBalance<'_> {
     /// Whether nothing is.
     pub(super) fn is_spent(&self) -> bool {
         self.left() <= 0.0
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::balance::settings::Settings;
+    use crate::balance::solution::{Point, PointStatus};
+    use crate::balance::unknowns::Unknowns;
+    use crate::balance::ExactOrbits;
+    use crate::contact::Cubic;
+    use crate::model::{Contact, Model};
+    use crate::structure::{HarmonicLoad, Structure};
+    use faer::{c64, mat, Mat};
+    use std::cell::Cell;
+
+    /// A mass on a hardening spring.
+    fn model() -> Model {
+        let one = mat![[1.0]];
+        let structure = Structure::new(one.as_ref(), mat![[0.1]].as_ref(), one.as_ref());
+        let row = Mat::from_fn(1, 1, |_, _| 1.0);
+        let contacts = vec![Contact { law: Box::new(Cubic::new(0.3).unwrap()), rows: row }];
+        let loads = vec![HarmonicLoad { harmonic: 1, amplitude: vec![c64::new(0.2, 0.0)] }];
+        Model::new(structure.unwrap(), contacts, loads).unwrap()
+    }
+
+    /// Searches for orbits that take long and find nothing.
+    #[derive(Default)]
+    struct Vain {
+        work: Cell<f64>,
+        allowed: Cell<f64>,
+    }
+
+    impl ExactOrbits for Vain {
+        fn orbit(&self, _: f64, _: usize) -> Option<Point> {
+            self.work.set(self.work.get() + 1e9);
+            None
+        }
+
+        fn orbit_of(&self, _: &Unknowns, omega: f64, highest: usize) -> Option<Point> {
+            self.orbit(omega, highest)
+        }
+
+        fn price(&self, _: f64, _: usize, _: usize) -> Option<f64> {
+            Some(1.0)
+        }
+
+        fn is_one_of_many(&self, _: f64) -> bool {
+            false
+        }
+
+        fn settled(&self, _: f64, _: usize) -> Option<Vec<c64>> {
+            None
+        }
+
+        fn work(&self) -> f64 {
+            self.work.get()
+        }
+
+        fn allow(&self, work: f64) {
+            self.allowed.set(work);
+        }
+    }
+
+    #[test]
+    fn a_point_without_work_says_so() {
+        let model = model();
+        let balance = || ForcedBalance::new(&model, Settings::default(), &[0]).unwrap();
+        let enough = balance().granting(1e9).solve(0.7, None).unwrap();
+        assert_eq!(enough.status, PointStatus::Converged);
+        let none = balance().granting(1.0).solve(0.7, None).unwrap();
+        assert_eq!(none.status, PointStatus::WorkLimit);
+        assert!(!none.is_solved());
+    }
+
+    /// A search is on the account of the point, and hears what is left of it.
+    #[test]
+    fn searches_for_orbits_are_paid_for() {
+        let model = model();
+        let orbits = Vain::default();
+        let balance = ForcedBalance::new(&model, Settings::default(), &[0]).unwrap();
+        let mut balance = balance.granting(3e9).rescued(&orbits);
+        balance.grant();
+        for left in [3e9, 2e9] {
+            assert!(balance.orbit_to_start_from(0.7, 9).is_none());
+            assert_eq!((orbits.allowed.get(), balance.left()), (left, left - 1e9));
+        }
     }
 }

@@ -258,6 +258,13 @@ pub trait ContactLaw: Send + Sync + std::fmt::Debug {
     }
 }
 
+/// Time of an evaluation that takes so long by itself, per coefficient, and per entry of its tangent \[ns\].
+pub(crate) fn effort_of([own, each, entry]: [f64; 3], coefficients: usize, tangent: bool) -> f64 {
+    let coefficients = coefficients as f64;
+    let entries = if tangent { coefficients.powi(2) } else { 0.0 };
+    own + each * coefficients + entry * entries
+}
+
 /// The harmonics of the contact force of a periodic motion, and what belongs to them.
 pub trait HarmonicForce {
     /// Slip load of a periodic motion and, if asked for, its tangent. Both belong to each other
@@ -267,6 +274,12 @@ pub trait HarmonicForce {
     /// Highest harmonic that the evaluation resolves; all of them where it is exact.
     fn resolves(&self) -> usize {
         usize::MAX
+    }
+
+    /// Time that an evaluation usually takes, with its tangent or without, in so many coefficients per component
+    /// \[ns\]: work is counted by it.
+    fn effort(&self, slots: usize, tangent: bool) -> f64 {
+        effort_of([1e3, 60.0, 4.0], slots, tangent)
     }
 
     /// Slip share and friction work of every component.

@@ -45,6 +45,8 @@ pub struct Flow<'a> {
     pub(super) powers: Vec<f64>,
     interrupted: Option<&'a dyn Fn() -> bool>,
     granted: usize,
+    /// What other work has cost, in steps.
+    charged: usize,
     /// Steps taken since the start.
     pub steps: usize,
     /// Events met since the start.
@@ -64,6 +66,7 @@ impl<'a> Flow<'a> {
             powers: vec![0.0; 2 * (DEGREE + 1)],
             interrupted: None,
             granted: usize::MAX,
+            charged: 0,
             steps: 0,
             events: 0,
         }
@@ -90,13 +93,18 @@ impl<'a> Flow<'a> {
 
     /// Takes off the steps that are granted what other work costs.
     pub(crate) fn charge(&mut self, steps: usize) {
-        self.granted = self.granted.saturating_sub(steps);
+        self.charged += steps;
+    }
+
+    /// Steps that are taken, and what counts as such.
+    pub(crate) fn taken(&self) -> usize {
+        self.steps + self.charged
     }
 
     /// Whether all steps that were granted are taken.
     #[must_use]
     pub fn is_spent(&self) -> bool {
-        self.steps >= self.granted
+        self.taken() >= self.granted
     }
 
     /// Moves a state on to the time `until` \[s\].

@@ -85,13 +85,15 @@ impl PeriodicOrbits<'_> {
         let known = self.balanced.take().filter(|_| self.plan.unique || given);
         let found = balance.solve(omega, known.as_ref());
         self.balanced = found.as_ref().ok().and_then(|point| point.unknowns().cloned());
+        let half_wave = balance.half_wave();
+        self.profile.work += balance.into_profile().work;
         match found {
             Ok(point) if point.status == PointStatus::Converged => start_of(
                 self.plan.with_history.as_deref().unwrap_or(self.plan.model),
                 &self.plan.system,
                 self.plan.settings.residual,
                 &later(&point, angle),
-                balance.half_wave(),
+                half_wave,
             ),
             _ => rest,
         }

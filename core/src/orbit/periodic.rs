@@ -2,10 +2,11 @@
 
 use super::closed::{left_error, Orbit};
 use super::plan::Plan;
+use super::price::work_of_steps;
 use super::reading::{misses, Reading};
 use super::rotation::Rotation;
 use super::settings::OrbitSettings;
-use super::shooting::Shooting;
+use super::shooting::{Shooting, STEPS};
 use super::sliders::{choose, Assumption, Chosen};
 use super::start::start_of;
 use crate::balance::{Kept, Point, PointStatus, Progress, Unknowns};
@@ -88,11 +89,9 @@ impl<'a> PeriodicOrbits<'a> {
         Ok(Plan::new(model, settings, observe)?.orbits(&|_| true))
     }
 
-    /// Grants an orbit fewer steps of the flow.
-    #[must_use]
-    pub(super) fn granted(mut self, steps: usize) -> Self {
-        self.plan.granted = self.plan.granted.min(steps);
-        self
+    /// Grants orbits from here on fewer steps of the flow than usual.
+    pub(super) fn grant(&mut self, steps: usize) {
+        self.plan.granted = steps.min(STEPS);
     }
 
     /// Has the balance of the next orbit begin with a motion at its frequency.
@@ -195,6 +194,7 @@ impl<'a> PeriodicOrbits<'a> {
         }
         shooting.exchange(&mut self.propagators);
         let found = self.solve_by(&mut shooting, omega, neighbour);
+        self.profile.work += work_of_steps(&system, shooting.flow.taken());
         shooting.exchange(&mut self.propagators);
         found
     }

@@ -50,12 +50,25 @@ pub(super) fn orbit_price(
     PASSES * pass + EIGENVALUES * cube + survey
 }
 
-/// Steps of the flow that `operations` pay for. What follows a loop or the slip in a plane takes many times as
-/// long as its products tell.
+/// Time of an operation \[ns\].
+pub(super) const PER_OPERATION: f64 = 0.75;
+
+/// Steps of the flow that `operations` pay for.
 pub(super) fn steps_for(system: &ModalSystem, operations: f64) -> usize {
+    (operations / operations_of_step(system)) as usize
+}
+
+/// Work that so many steps of the flow are \[ns\].
+pub(super) fn work_of_steps(system: &ModalSystem, steps: usize) -> f64 {
+    PER_OPERATION * operations_of_step(system) * steps as f64
+}
+
+/// Operations in the time of a step. What follows a loop or the slip in a plane takes many times as long as its
+/// products tell.
+fn operations_of_step(system: &ModalSystem) -> f64 {
     let slow =
         PER_PLANE * system.planes().len() as f64 + PER_LOOP * system.microslips().len() as f64;
-    (operations / (step_price(system) + slow)) as usize
+    step_price(system) + slow
 }
 
 /// What a transition matrix over so many stretches costs, in passes along an orbit of so many steps.

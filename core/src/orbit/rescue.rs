@@ -3,7 +3,7 @@
 
 use super::closed::Orbit;
 use super::periodic::{PeriodicOrbits, FASTEST};
-use super::price::{orbit_price, steps_for};
+use super::price::{orbit_price, steps_for, PER_OPERATION};
 use super::settings::OrbitSettings;
 use super::settled::Settled;
 use crate::balance::{ExactOrbits, Point, PointStatus, Progress, Unknowns};
@@ -15,6 +15,8 @@ use std::cell::{Cell, RefCell};
 
 /// Operations that one search may take, transition matrices included: a second or two.
 const PATIENCE: f64 = 2e9;
+/// Operations that one may take in any case: where a balance has spent the work of a point, an orbit may be near.
+const LEAST: f64 = 5e8;
 
 /// Where an orbit began.
 struct Known {
@@ -41,6 +43,8 @@ pub struct OrbitInitialGuess<'a> {
     begun: Cell<(f64, bool)>,
     /// Frequency and motion that settled last, if one did: it is asked for with many numbers of harmonics.
     settled: RefCell<Option<(f64, Option<Settled>)>>,
+    /// Operations that the point at hand leaves for a search.
+    allowed: Cell<f64>,
 }
 
 impl<'a> OrbitInitialGuess<'a> {
@@ -64,6 +68,7 @@ impl<'a> OrbitInitialGuess<'a> {
             missed: Cell::new(f64::NAN),
             begun: Cell::new((f64::NAN, false)),
             settled: RefCell::new(None),
+            allowed: Cell::new(PATIENCE),
         }
     }
 
@@ -72,16 +77,21 @@ impl<'a> OrbitInitialGuess<'a> {
         let orbits = prepared.get_or_insert_with(|| {
             let settings = OrbitSettings { residual: self.residual, ..OrbitSettings::default() };
             let orbits = PeriodicOrbits::new(self.model, settings, self.observe).ok()?;
-            let steps = steps_for(orbits.system(), PATIENCE);
-            Some(orbits.watched(self.progress).granted(steps))
+            Some(orbits.watched(self.progress))
         });
         work(orbits.as_mut()?)
+    }
+
+    /// Operations that a search may take.
+    fn patience(&self) -> f64 {
+        self.allowed.get().clamp(LEAST, PATIENCE)
     }
 
     /// The orbit from where the last one of its kind at the same frequency began, if there was one.
     fn search(&self, known: &RefCell<Option<Known>>, omega: f64, highest: usize) -> Option<Point> {
         self.with(|orbits| {
             orbits.report_up_to(highest);
+            orbits.grant(steps_for(orbits.system(), self.patience()));
             let last = known.take().filter(|last| last.omega == omega);
             let found = orbits.solve(omega, last.as_ref().map(|last| &last.start)).ok()?;
             // Of laws with constant limits sliders at rest leave the vibration as it is.
@@ -150,6 +160,14 @@ impl ExactOrbits for OrbitInitialGuess<'_> {
         }
         let (_, found) = settled.as_ref()?;
         found.as_ref().map(|motion| motion.amplitudes(highest))
+    }
+
+    fn work(&self) -> f64 {
+        self.orbits.borrow().iter().flatten().map(|orbits| orbits.profile.work).sum()
+    }
+
+    fn allow(&self, work: f64) {
+        self.allowed.set(work / PER_OPERATION);
     }
 
     fn is_one_of_many(&self, omega: f64) -> bool {

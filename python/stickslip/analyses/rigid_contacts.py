@@ -15,7 +15,13 @@ RIGID = 1e5
 """Stiffness of a contact, over that of the structure at its DOFs, up to which motions are found."""
 
 
-UNSOLVED = (Status.STALLED, Status.SAMPLES_LIMIT, Status.HARMONICS_LIMIT, Status.EFFORT_LIMIT)
+UNSOLVED = (
+    Status.STALLED,
+    Status.SAMPLES_LIMIT,
+    Status.HARMONICS_LIMIT,
+    Status.EFFORT_LIMIT,
+    Status.WORK_LIMIT,
+)
 """How points end that nearly rigid contacts keep from their solution."""
 
 

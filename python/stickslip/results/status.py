@@ -106,6 +106,13 @@ class Status(Ending):
         "Not compared: the exact orbit that was found is another one of several motions at this "
         "omega. Certify points where there is one motion, or follow this one with transient.",
     )
+    WORK_LIMIT = (
+        "work limit",
+        "Not solved: the work that is granted to a point with automatic harmonics was spent before "
+        "any were solved, as where contacts are nearly rigid, or open and close at low omega. "
+        "Give a number of harmonics, which grants whatever it takes, begin at a neighbouring "
+        "omega, or condense light or nearly rigid dofs statically.",
+    )
 
     @property
     def solved(self) -> bool:

@@ -64,7 +64,11 @@ impl ForcedBalance<'_> {
     ) -> Result<(), Error> {
         let failed = matches!(
             point.status,
-            PointStatus::Stalled | PointStatus::Singular | PointStatus::Free | PointStatus::History
+            PointStatus::Stalled
+                | PointStatus::Singular
+                | PointStatus::Free
+                | PointStatus::History
+                | PointStatus::WorkLimit
         );
         if !last.is_solved() || !(point.is_solved() || failed) || last.omega == point.omega {
             return Ok(());

@@ -12,13 +12,12 @@
 //! so that the tangential slip load is s itself. The traction is continuous at all events: those that
 //! move add nothing to derivatives.
 
-use super::collocation::NODES;
 use super::drive::Drive;
 use super::panel::Panel;
+use super::variation::RateIntegrals;
 use crate::contact::slider_integrals::{dot, Bounds};
 use crate::contact::{Phase, PointState, PointSummary};
 use crate::fourier::IntervalSums;
-use crate::solve::Block;
 use std::f64::consts::TAU;
 
 /// What a contact does over a stretch of the period.
@@ -207,31 +206,24 @@ impl Cycle {
         let slots = drive.harmonics().slots();
         let weight = 2.0 / drive.harmonics().span();
         let width = if out.is_empty() { 0 } else { self.columns };
-        // Derivatives of the integrals of both directions, column after column.
-        let mut sums = Block::zeros(2 * width, slots);
-        let mut factors = Block::zeros(2 * width, NODES);
-        let mut basis = Block::zeros(NODES, slots);
-        let mut any = false;
-        for stretch in &self.stretches {
-            let State::Turning(panel) = &stretch.state else { continue };
-            any = true;
+        let panels = self.stretches.iter().filter_map(|stretch| match &stretch.state {
+            State::Turning(panel) => Some(panel),
+            _ => None,
+        });
+        let count = panels.clone().count();
+        let mut rates = (width > 0 && count > 0).then(|| RateIntegrals::new(count, slots, width));
+        for panel in panels {
             let weights = panel.weights().map(|own| -weight * own);
             panel.add_traction(&weights, value);
-            if width > 0 {
-                for n in 0..NODES {
-                    let row = basis.row_mut(n).iter_mut().zip(&panel.basis);
-                    row.for_each(|(entry, basis)| *entry = basis[n]);
-                }
-                panel.weigh_rates(&weights, drive, &mut factors);
-                sums.subtract_product(&factors, &basis);
+            if let Some(rates) = &mut rates {
+                rates.add(panel, &weights, drive);
             }
         }
-        if any && width > 0 {
-            for (row, out) in out.chunks_exact_mut(width).enumerate() {
-                let first = row / slots * width;
-                for (column, out) in out.iter_mut().enumerate() {
-                    *out -= sums[(first + column, row % slots)];
-                }
+        let Some(sums) = rates.map(RateIntegrals::into_sums) else { return };
+        for (row, out) in out.chunks_exact_mut(width).enumerate() {
+            let first = row / slots * width;
+            for (column, out) in out.iter_mut().enumerate() {
+                *out += sums[(row % slots, first + column)];
             }
         }
     }

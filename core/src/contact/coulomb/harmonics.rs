@@ -10,7 +10,7 @@ use super::cycle::{Cycle, Response, State, Stretch};
 use super::drive::Drive;
 use super::grid::Grid;
 use super::{period, play};
-use crate::contact::law::HarmonicForce;
+use crate::contact::law::{effort_of, HarmonicForce};
 use crate::contact::slider_integrals::dot;
 use crate::contact::{AssumedStart, Closure, ContactLaw as _, Coulomb, Held};
 use crate::contact::{Motion, Phase, PointSummary, SlipLoad};
@@ -201,6 +201,16 @@ struct Variation {
 }
 
 impl HarmonicForce for Coulomb {
+    /// In the plane panels as many as harmonics carry derivatives in all coefficients.
+    fn effort(&self, slots: usize, tangent: bool) -> f64 {
+        let coefficients = self.displacements() * slots;
+        if self.directions == 1 {
+            return effort_of([3e3, 100.0, 0.7], coefficients, tangent);
+        }
+        let products = if tangent { 0.03 * (coefficients as f64).powi(3) } else { 0.0 };
+        effort_of([3e4, 1.8e3, 0.0], coefficients, tangent) + products
+    }
+
     fn slip_load(&self, motion: Motion<'_>, tangent: bool, out: &mut SlipLoad) {
         out.reset(motion.displacement.len(), tangent);
         if let Some(constant) = Constant::of(self, motion) {

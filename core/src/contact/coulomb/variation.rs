@@ -6,21 +6,77 @@
 use super::collocation::{Collocation, Lanes, NODES};
 use super::drive::Drive;
 use super::panel::{product, Panel};
-use crate::solve::Block;
+use faer::linalg::matmul::matmul;
+use faer::{Accum, Mat, Par};
 use pulp::{Arch, Simd, WithSimd};
 
 /// Columns of a product that share its factors.
 const TILE: usize = 4;
+/// Panels whose products are summed at once: the sums are long, and are passed through once for all of them.
+const TOGETHER: usize = 16;
+
+/// Derivatives of the Fourier integrals of the traction over panels, summed over many panels at once.
+pub(super) struct RateIntegrals {
+    /// Basis at the nodes of the panels at hand, slot after slot.
+    basis: Mat<f64>,
+    /// Derivatives of the weighted traction there, both directions one after the other, column after column.
+    traction: Mat<f64>,
+    /// Integrals, slot after slot in columns of the derivative.
+    sums: Mat<f64>,
+    /// Nodes at hand.
+    nodes: usize,
+}
+
+impl RateIntegrals {
+    /// None yet, over so many panels, of so many slots in so many columns per direction.
+    pub(super) fn new(panels: usize, slots: usize, width: usize) -> Self {
+        let most = panels.min(TOGETHER) * NODES;
+        Self {
+            basis: Mat::zeros(most, slots),
+            traction: Mat::zeros(most, 2 * width),
+            sums: Mat::zeros(slots, 2 * width),
+            nodes: 0,
+        }
+    }
+
+    /// Adds a panel.
+    pub(super) fn add(&mut self, panel: &Panel, weights: &Lanes, drive: &Drive<'_>) {
+        let at = self.nodes;
+        for (slot, basis) in panel.basis.iter().enumerate() {
+            self.basis.col_as_slice_mut(slot)[at..at + NODES].copy_from_slice(basis);
+        }
+        panel.weigh_rates(weights, drive, &mut self.traction, at);
+        self.nodes += NODES;
+        if self.nodes == self.basis.nrows() {
+            self.sum_up();
+        }
+    }
+
+    fn sum_up(&mut self) {
+        let basis = self.basis.get(..self.nodes, ..).transpose();
+        let traction = self.traction.get(..self.nodes, ..);
+        matmul(self.sums.as_mut(), Accum::Add, basis, traction, 1.0, Par::Seq);
+        self.nodes = 0;
+    }
+
+    /// Integrals of all panels.
+    pub(super) fn into_sums(mut self) -> Mat<f64> {
+        if self.nodes > 0 {
+            self.sum_up();
+        }
+        self.sums
+    }
+}
 
 impl Panel {
     /// Writes the derivatives of the traction at the nodes times weights, direction after direction,
-    /// in rows that are columns of the derivative.
-    pub(super) fn weigh_rates(&self, weights: &Lanes, drive: &Drive<'_>, out: &mut Block) {
-        Arch::new().dispatch(Weighing { panel: self, weights, drive, out });
+    /// in columns of the derivative, in rows from `at` on.
+    fn weigh_rates(&self, weights: &Lanes, drive: &Drive<'_>, out: &mut Mat<f64>, at: usize) {
+        Arch::new().dispatch(Weighing { panel: self, weights, drive, out, at });
     }
 
     #[inline(always)]
-    fn weighed(&self, weights: &Lanes, drive: &Drive<'_>, out: &mut Block) {
+    fn weighed(&self, weights: &Lanes, drive: &Drive<'_>, out: &mut Mat<f64>, at: usize) {
         let [cos, sin] = &self.direction;
         let (width, first) = (self.rate.len(), drive.pull.len());
         for (turned, direction, offset) in [(sin, cos, 0), (cos, sin, width)] {
@@ -31,14 +87,14 @@ impl Panel {
                 along[i] = weights[i] * direction[i];
             }
             for (column, rate) in self.rate.iter().enumerate() {
-                let row = &mut out.row_mut(offset + column)[..NODES];
+                let row = &mut out.col_as_slice_mut(offset + column)[at..at + NODES];
                 for i in 0..NODES {
                     row[i] = across[i] * rate[i];
                 }
             }
             let constant = drive.pressing.is_none();
             for (column, basis) in self.basis.iter().enumerate().take(drive.limit_columns()) {
-                let row = &mut out.row_mut(offset + first + column)[..NODES];
+                let row = &mut out.col_as_slice_mut(offset + first + column)[at..at + NODES];
                 let basis = if constant { &[1.0; NODES] } else { basis };
                 for i in 0..NODES {
                     row[i] += along[i] * basis[i];
@@ -176,7 +232,8 @@ struct Weighing<'a> {
     panel: &'a Panel,
     weights: &'a Lanes,
     drive: &'a Drive<'a>,
-    out: &'a mut Block,
+    out: &'a mut Mat<f64>,
+    at: usize,
 }
 
 impl WithSimd for Weighing<'_> {
@@ -184,6 +241,6 @@ impl WithSimd for Weighing<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        self.panel.weighed(self.weights, self.drive, self.out);
+        self.panel.weighed(self.weights, self.drive, self.out, self.at);
     }
 }

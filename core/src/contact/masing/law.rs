@@ -9,7 +9,7 @@
 use super::integrals::{add_loops, every, sweep};
 use super::loops::{Branch, Loops, Stretch};
 use crate::contact::backbone::{Backbone, LoadingCurve};
-use crate::contact::law::HarmonicForce;
+use crate::contact::law::{effort_of, HarmonicForce};
 use crate::contact::parameter::{number, numbers};
 use crate::contact::return_map::ReturnMapJacobian;
 use crate::contact::stick_slip::{at_crest, Path};
@@ -252,6 +252,10 @@ impl ContactLaw for Masing {
 }
 
 impl HarmonicForce for Masing {
+    fn effort(&self, slots: usize, tangent: bool) -> f64 {
+        effort_of([4e3, 240.0, 16.0], slots, tangent)
+    }
+
     fn slip_load(&self, motion: Motion<'_>, tangent: bool, out: &mut SlipLoad) {
         let harmonics = motion.table.harmonics();
         out.reset(harmonics.slots(), tangent);

@@ -2,7 +2,7 @@
 
 use super::slip_series;
 use crate::contact::derivative::Derivative;
-use crate::contact::law::HarmonicForce;
+use crate::contact::law::{effort_of, HarmonicForce};
 use crate::contact::periodic_march::{PeriodicMarch, Stretch};
 use crate::contact::return_map::ReturnMapJacobian;
 use crate::contact::slip_element::{Element, SlipElement as _};
@@ -134,6 +134,10 @@ impl ContactLaw for StructuralDamper {
 }
 
 impl HarmonicForce for StructuralDamper {
+    fn effort(&self, slots: usize, tangent: bool) -> f64 {
+        effort_of([1.2e4, 900.0, 12.0], self.displacements() * slots, tangent)
+    }
+
     fn slip_load(&self, motion: Motion<'_>, tangent: bool, out: &mut SlipLoad) {
         out.reset(motion.displacement.len(), tangent);
         if motion.displacement.iter().any(|u| !u.is_finite()) {
