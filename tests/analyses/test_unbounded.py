@@ -297,3 +297,62 @@ def test_a_summary_asks_once_for_all(monkeypatch):
     assert len(response.summary()) == 6
     response.peak("q1", "max")
     assert asked.count("unbounded") == 1
+
+
+def mistuned_blades(force):
+    """A ring of twelve blades that differ, without any damping, and the same as one structure."""
+    count, blade = 12, np.array([[5e4, -2e4], [-2e4, 2.2e4]])
+    pattern = np.random.default_rng(0).normal(0.0, 0.01, count)
+    disk = ss.BladedDisk(
+        ss.Structure(np.diag([1.0, 0.5]), blade, dofs=["a", "b"]),
+        count,
+        [ss.Coupling("a", stiffness=1e3)],
+        [ss.Jenkins("b", stiffness=5e3, slip_force=1.0)],
+        [ss.Force("b", force)],
+        engine_order=2,
+    )
+    stiffness = np.kron(np.diag(1.0 + pattern), blade)
+    for i in range(count):
+        tie = np.eye(2 * count)[2 * i] - np.eye(2 * count)[2 * ((i + 1) % count)]
+        stiffness += 1e3 * np.outer(tie, tie)
+    dofs = [f"{i}.{dof}" for i in range(count) for dof in "ab"]
+    whole = ss.Model(
+        ss.Structure(np.kron(np.eye(count), np.diag([1.0, 0.5])), stiffness, dofs=dofs),
+        [ss.Jenkins(f"{i}.b", stiffness=5e3, slip_force=1.0) for i in range(count)],
+        [ss.Force(f"{i}.b", force, phase=4.0 * np.pi * i / count) for i in range(count)],
+    )
+    return disk.mistuned(pattern), whole
+
+
+@pytest.mark.parametrize("grid", [np.linspace(100.0, 170.0, 15), (100.0, 170.0)])
+def test_friction_bounds_undamped_blades_in_all_their_modes_or_in_none(grid):
+    """A blade by itself resonates among the modes of the ring, where nothing bounds it."""
+    (ring, whole), (driven, _) = mistuned_blades(0.5), mistuned_blades(3.0)
+    response = ss.forced_response(ring, grid, 3)
+    assert response.converged.all()
+    found, expected = response.peak("1.b"), ss.forced_response(whole, grid, 3).peak("1.b")
+    assert not found.beside_gap
+    assert (found.omega, found.amplitude) == pytest.approx((expected.omega, expected.amplitude))
+    with pytest.warns(UserWarning, match="neither damping nor friction bounds"):
+        assert ss.forced_response(driven, grid, 3).peak("1.b").amplitude == np.inf
+
+
+def test_undamped_blades_have_amplification_factors():
+    """None of these disks had been found."""
+    disk = mistuned_blades(0.5)[0].disk
+    found = ss.mistuning_study(disk, 0.02, patterns=3, dofs="b", omega=(100.0, 200.0), harmonics=3)
+    assert (found.status == "converged").all()
+    assert (found.factors("b") > 1.0).all()
+
+
+@pytest.mark.parametrize("dofs", [450, 1001])
+def test_a_large_undamped_chain_is_judged_while_its_modes_are_affordable(dofs):
+    """Up to a thousand of its degrees of freedom."""
+    stiffness = 1e4 * (2.0 * np.eye(dofs) - np.eye(dofs, k=1) - np.eye(dofs, k=-1))
+    structure = ss.Structure(np.eye(dofs), stiffness)
+    contact = ss.Jenkins("1", stiffness=STUCK, slip_force=1e-3)
+    model = ss.Model(structure, [contact], [ss.Force("2", 1.0)])
+    frequency = ss.natural_frequencies(ss.Model(structure, [], []))[9]
+    span = (frequency * 0.99, frequency * 1.01)
+    found = model.problem.unbounded(span)
+    assert (found[5] is not None) == (dofs < 1000)

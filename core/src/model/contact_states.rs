@@ -13,7 +13,7 @@ const MOST_STATES: usize = 16;
 /// Shares of their stiffness that points carry at higher harmonics when they slip in a part of the period.
 const CARRIED: [f64; 3] = [0.25, 0.5, 0.75];
 /// DOFs above which only stuck and free natural frequencies are known.
-const MOST_DOFS: usize = 400;
+pub(super) const MOST_DOFS: usize = 400;
 
 /// Poles of a state, by what load and slip forces do to them and what the DOFs show of them.
 #[derive(Debug)]

@@ -36,6 +36,9 @@ use std::sync::Arc;
 /// the slip that it bounds is lost in the rounding of the displacements.
 const NO_LIMIT: f64 = 1e-13;
 
+/// DOFs up to which the modes of a structure that nothing damps are found in any case: a second of work.
+const MOST_UNDAMPED: usize = 1000;
+
 /// One contact: its law and the rows of B that give its relative displacements.
 #[derive(Debug)]
 pub struct Contact<R = Mat<f64>> {
@@ -142,6 +145,10 @@ impl Model {
         }
         let ring = Arc::new(Ring::new(parts, coupling)?);
         let (structure, ports) = ring.assembled()?;
+        // Its sectors resonate by themselves where the ring does not, and nothing bounds them there.
+        if structure.is_undamped() && structure.dofs() <= MOST_UNDAMPED {
+            return Self::of(Body::Whole, structure, ports, laws, points);
+        }
         Ok(Self {
             structure: Arc::new(structure),
             laws: perceptible(laws, &ports.loads)?,

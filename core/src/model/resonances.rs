@@ -37,6 +37,13 @@ pub struct Resonance {
     pub partial: bool,
 }
 
+impl Resonance {
+    /// One that a load excites, of which no more is known.
+    fn at(omega: f64, bandwidth: f64, unbounded: Vec<usize>) -> Self {
+        Self { omega, bandwidth, reach: None, unbounded, forced: true, partial: false }
+    }
+}
+
 impl Model {
     /// Whether the resonances of all states of the contacts are known, or those of the stuck and of
     /// the free structure alone.
@@ -61,22 +68,9 @@ impl Model {
         for harmonic in harmonics.filter(|&k| k > 0) {
             let (order, is_forced) = (harmonic as f64, forced.contains(&harmonic));
             let Some(states) = self.states_at(harmonic)? else {
-                if !is_forced {
-                    continue;
+                if is_forced {
+                    found.extend(self.natural((low, high), harmonic));
                 }
-                let band = [low * order, high * order];
-                let natural =
-                    [true, false].map(|stuck| self.compliance.frequencies_between(stuck, band));
-                let bandwidth = self.compliance.narrowest_bandwidth() / order;
-                let at = natural.into_iter().flatten().map(|w| w / order).filter(|&w| inside(w));
-                found.extend(at.map(|omega| Resonance {
-                    omega,
-                    bandwidth,
-                    reach: None,
-                    unbounded: Vec::new(),
-                    forced: is_forced,
-                    partial: false,
-                }));
                 continue;
             };
             // A slipping contact bears a square wave at most.
@@ -108,8 +102,28 @@ impl Model {
                 }
             }
         }
+        if !self.knows_its_states() {
+            let grown = self.unbounded_resonances(&|_| true)?.into_iter();
+            let grown = grown.filter(|(omega, _)| inside(*omega));
+            found.extend(grown.map(|(omega, dofs)| Resonance::at(omega, 0.0, dofs)));
+        }
         found.sort_by(|a, b| a.omega.total_cmp(&b.omega));
         Ok(found)
+    }
+
+    /// Natural frequencies of the stuck and of the free structure that a load on a harmonic meets.
+    fn natural(
+        &self,
+        (low, high): (f64, f64),
+        harmonic: usize,
+    ) -> impl Iterator<Item = Resonance> + '_ {
+        let order = harmonic as f64;
+        let bandwidth = self.compliance.narrowest_bandwidth() / order;
+        let natural =
+            move |stuck| self.compliance.frequencies_between(stuck, [low, high].map(|w| w * order));
+        let at = [true, false].into_iter().flat_map(natural).map(move |w| w / order);
+        let at = at.filter(move |w| (low..=high).contains(w));
+        at.map(move |omega| Resonance::at(omega, bandwidth, Vec::new()))
     }
 
     /// The load of a harmonic on every DOF.

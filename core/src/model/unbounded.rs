@@ -7,12 +7,11 @@
 //! That balance says nothing where forces grow with the motion: of a cubic spring, a stop, friction under a
 //! normal load that the motion changes. What such a contact does not see may still be unbounded.
 
-use super::body::Body;
-use super::contact_states::State;
+use super::contact_states::{State, MOST_DOFS};
 use super::resonances::{driven, square_wave, Bearing, NOISE};
 use super::traction::{lines_of_a_traction, most_of_a_traction};
 use super::unbalanced::{product, remainder, size, Bounded};
-use super::Model;
+use super::{Model, MOST_UNDAMPED};
 use crate::progress::Progress;
 use crate::Error;
 use faer::linalg::solvers::Solve as _;
@@ -61,10 +60,10 @@ impl Model {
         progress: &Progress<'_>,
     ) -> Result<Vec<(f64, Vec<usize>)>, Error> {
         let mut found = Vec::new();
-        if !self.knows_its_states() {
+        if !self.affords_its_modes() {
             return Ok(found);
         }
-        if matches!(self.body, Body::Whole) && self.structure.is_damped() {
+        if !self.is_travelling_wave() && self.structure.is_damped() {
             return Ok(found);
         }
         let slips: Vec<bool> = self.slip_limits().map(f64::is_finite).collect();
@@ -86,6 +85,12 @@ impl Model {
             last = Some((diameter, state));
         }
         Ok(found)
+    }
+
+    /// Whether the modes of the state in which all slips can be found.
+    fn affords_its_modes(&self) -> bool {
+        let most = if self.structure.is_undamped() { MOST_UNDAMPED } else { MOST_DOFS };
+        self.knows_its_states() || self.structure.dofs() <= most
     }
 
     /// What nothing bounds, neither decay nor any force, in a state in which all slips.

@@ -185,6 +185,11 @@ impl Structure {
         is_positive(&even(self.damping.clone()))
     }
 
+    /// Whether it takes energy from none.
+    pub(crate) fn is_undamped(&self) -> bool {
+        self.damping.norm_max() == 0.0
+    }
+
     /// Stiffness matrix [N/m], contacts not included.
     #[must_use]
     pub fn stiffness(&self) -> MatRef<'_, f64> {
