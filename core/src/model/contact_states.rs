@@ -9,11 +9,13 @@ use std::sync::OnceLock;
 
 /// States of the contacts, at most: all of a few points; of more the stuck and the slipping one, and
 /// those in which one point differs from all others.
-const MOST_STATES: usize = 16;
+pub(super) const MOST_STATES: usize = 16;
 /// Shares of their stiffness that points carry at higher harmonics when they slip in a part of the period.
 const CARRIED: [f64; 3] = [0.25, 0.5, 0.75];
 /// DOFs above which only stuck and free natural frequencies are known.
 pub(super) const MOST_DOFS: usize = 400;
+/// The same of rings of sectors, whose searches are many and take no matrices of the whole.
+const MOST_IN_RING: usize = 60;
 
 /// Poles of a state, by what load and slip forces do to them and what the DOFs show of them.
 #[derive(Debug)]
@@ -44,8 +46,8 @@ impl States {
     pub(super) fn of(body: &Body, dofs: usize) -> Self {
         let count = match body {
             Body::Wave { cyclic, .. } => cyclic.sectors,
-            Body::Whole if dofs <= MOST_DOFS => 1,
-            Body::Whole | Body::Ring(_) => 0,
+            Body::Whole => usize::from(dofs <= MOST_DOFS),
+            Body::Ring(_) => usize::from(dofs <= MOST_IN_RING),
         };
         Self { diameters: (0..count).map(|_| OnceLock::new()).collect() }
     }
@@ -57,9 +59,9 @@ pub(super) fn slip_kinds(laws: &[Box<dyn ContactLaw>]) -> Vec<(bool, bool)> {
     limits.map(|limit| (limit == 0.0, limit.is_infinite())).collect()
 }
 
-/// The points that slip in each state that matters: those without friction always do, those without
-/// a limit never.
-pub(super) fn slip_sets(limits: &[f64]) -> Vec<Vec<bool>> {
+/// The points that slip in each state that matters, the stuck and the slipping one if others would make more than
+/// `most`: those without friction always do, those without a limit never.
+pub(super) fn slip_sets(limits: &[f64], most: usize) -> Vec<Vec<bool>> {
     let either: Vec<usize> =
         (0..limits.len()).filter(|&i| limits[i] > 0.0 && limits[i].is_finite()).collect();
     let state = |slips: &dyn Fn(usize) -> bool| -> Vec<bool> {
@@ -68,26 +70,26 @@ pub(super) fn slip_sets(limits: &[f64]) -> Vec<Vec<bool>> {
         state
     };
     let count = either.len();
-    if count < usize::BITS as usize && 1 << count <= MOST_STATES {
+    if count < usize::BITS as usize && 1 << count <= most {
         return (0..1 << count).map(|mask: usize| state(&|i| mask >> i & 1 == 1)).collect();
     }
     let mut sets = vec![state(&|_| false), state(&|_| true)];
-    if 2 * (count + 1) <= 2 * MOST_STATES {
+    if 2 * (count + 1) <= 2 * most {
         sets.extend((0..count).flat_map(|one| [state(&|i| i == one), state(&|i| i != one)]));
     }
     sets
 }
 
-/// The points that slip in a part of the period in each state that matters, all or, of a few, one, and the
-/// share of their stiffness that they carry.
-pub(super) fn partial_sets(limits: &[f64]) -> Vec<(Vec<bool>, f64)> {
-    let mut sets = slip_sets(limits);
+/// The points that slip in a part of the period in each of these states, all or, of a few, one, and the share of
+/// their stiffness that they carry.
+pub(super) fn partial_sets(limits: &[f64], most: usize) -> Vec<(Vec<bool>, f64)> {
+    let mut sets = slip_sets(limits, most);
     let count = |slips: &[bool]| slips.iter().filter(|slips| **slips).count();
     let all_counts: Vec<usize> = sets.iter().map(|slips| count(slips)).collect();
     let least = all_counts.iter().copied().min().unwrap_or(0);
-    let most = all_counts.iter().copied().max().unwrap_or(0);
-    let few = sets.len() <= MOST_STATES;
-    let matters = |own: usize| own > least && (own == most || few && own == least + 1);
+    let highest = all_counts.iter().copied().max().unwrap_or(0);
+    let few = sets.len() <= most;
+    let matters = |own: usize| own > least && (own == highest || few && own == least + 1);
     sets.retain(|slips| matters(count(slips)));
     sets.iter().flat_map(|slips| CARRIED.map(|carried| (slips.clone(), carried))).collect()
 }

@@ -150,13 +150,13 @@ impl Model {
             return Self::of(Body::Whole, structure, ports, laws, points);
         }
         Ok(Self {
-            structure: Arc::new(structure),
             laws: perceptible(laws, &ports.loads)?,
             ports: Arc::new(ports),
             points,
             compliance: Arc::clone(&ring) as Arc<dyn Compliance>,
             modal_base: "sectors",
-            states: Arc::new(States::of(&Body::Ring(Arc::clone(&ring)), 0)),
+            states: Arc::new(States::of(&Body::Ring(Arc::clone(&ring)), structure.dofs())),
+            structure: Arc::new(structure),
             body: Body::Ring(ring),
         })
     }

@@ -6,7 +6,7 @@
 //! carry moves it from there.
 
 use super::body::Body;
-use super::contact_states::{partial_sets, slip_sets, State};
+use super::contact_states::{partial_sets, slip_sets, State, MOST_STATES};
 use super::slipping_point::{shift, SlippingPoint};
 use super::traction::most_of_a_traction;
 use super::Model;
@@ -160,8 +160,10 @@ impl Model {
 
     fn find_states(&self, diameter: usize) -> Result<Vec<State>, Error> {
         let limits: Vec<f64> = self.slip_limits().collect();
-        let whole = slip_sets(&limits).into_iter().map(|slips| (slips, 0.0));
-        let sets = whole.chain(partial_sets(&limits));
+        // The many equal sectors of a ring stick and slip together.
+        let most = if matches!(self.body, Body::Ring(_)) { 0 } else { MOST_STATES };
+        let whole = slip_sets(&limits, most).into_iter().map(|slips| (slips, 0.0));
+        let sets = whole.chain(partial_sets(&limits, most));
         sets.map(|(slips, carried)| self.state(diameter, &slips, carried)).collect()
     }
 

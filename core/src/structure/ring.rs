@@ -5,6 +5,7 @@
 //! DOFs of their coupling alone, so that a response of the whole disk takes one cyclic block
 //! tridiagonal solution in these DOFs: the effort grows with the number of sectors.
 
+use super::flexibility::RIGID_BODY;
 use super::ports::{forced_harmonics, HarmonicLoad, Ports};
 use super::ring_order::{RingLayout, RingOrder, SectorReceptances};
 use super::{compliance, Compliance, Outline, Receptance, Structure};
@@ -114,7 +115,8 @@ impl Ring {
         for index in 0..parts.len() {
             let before = &parts[(index + parts.len() - 1) % parts.len()];
             let sector = isolated(&parts[index], before, &layout)?;
-            outline.bandwidth = outline.bandwidth.min(sector.narrowest_bandwidth());
+            let free = free_bandwidth(&parts[index].structure)?;
+            outline.bandwidth = outline.bandwidth.min(sector.narrowest_bandwidth()).min(free);
             highest = sector.stuck_frequencies().iter().copied().fold(highest, f64::max);
             sectors.push(sector);
         }
@@ -266,6 +268,16 @@ fn add(matrix: &mut Mat<f64>, row: usize, column: usize, block: MatRef<'_, f64>)
     let mut target =
         matrix.get_mut(row * rows..(row + 1) * rows, column * columns..(column + 1) * columns);
     target += block;
+}
+
+/// Half-power bandwidth of the least damped mode of a sector without its contacts, rigid motions excepted [rad/s].
+fn free_bandwidth(structure: &Structure) -> Result<f64, Error> {
+    let modes = structure.modes_at(structure.stiffness().to_owned())?.modes;
+    let damping = modes.project(structure.damping());
+    let squared = &modes.omega_squared;
+    let rigid = RIGID_BODY * squared.last().copied().unwrap_or(0.0);
+    let moved = squared.iter().enumerate().filter(|(_, squared)| **squared > rigid);
+    Ok(moved.map(|(j, _)| damping[(j, j)].abs()).fold(f64::MAX, f64::min))
 }
 
 /// A sector with its neighbours held still, as its ports see it.
