@@ -6,12 +6,9 @@ the first line of any module in it.
 
 from __future__ import annotations
 
-import os
 import signal
-from types import FrameType
 
-STOPPED = 128
-"""Exit code of a run that a signal has ended, beside the signal's number."""
+from stickslip_command.stop import leave
 
 
 def main() -> None:
@@ -21,12 +18,3 @@ def main() -> None:
     from stickslip.cli import app
 
     app(prog_name="stickslip")
-
-
-def leave(number: int, _: FrameType | None) -> None:
-    """End the program: modules that are half loaded hand no exception on."""
-    try:
-        # Not by a stream, whose lock may be held where the signal came.
-        os.write(2, b"interrupted: nothing more was saved\n")
-    finally:
-        os._exit(STOPPED + number)

@@ -17,10 +17,9 @@ from scipy.io import loadmat
 import stickslip as ss
 from beam_study import invoke
 from stickslip.reference import beam_pair, beam_ring, flutter_mass, snecma_beam
-from stickslip.results import export
 from stickslip.results.arrays import Arrays
 from stickslip.results.fields import Float, column
-from stickslip.results.table import Tables
+from stickslip.results.table import Tables, headed
 
 BEAM = snecma_beam()
 GRID = np.linspace(150.0, 250.0, 12)
@@ -245,7 +244,7 @@ def test_excel_has_every_bit(kind, results, tmp_path):
     assert [table for _, table in names] == list(tables)
     for sheet, name in names:
         (head, *rows), table = book[sheet].values, tables[name]
-        assert list(head) == list(export.headed(table).columns)
+        assert list(head) == list(headed(table).columns)
         assert len(rows) == len(table)
         for number, one in enumerate(table.columns):
             read = [row[number] for row in rows]
@@ -384,7 +383,7 @@ def test_the_command_writes_beside_the_results(folder, frf):
     done = invoke("export", "low.nc", "high.nc", "--to", "csv")
     assert done.exit_code == 0, done.stderr
     assert done.stdout.split() == ["export:", "low.csv", "export:", "high.csv"]
-    expected = export.headed(frf.to_pandas()).to_csv(index=False, lineterminator="\n")
+    expected = headed(frf.to_pandas()).to_csv(index=False, lineterminator="\n")
     assert (folder / "low.csv").read_text() == (folder / "high.csv").read_text() == expected
 
 

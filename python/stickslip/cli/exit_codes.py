@@ -20,7 +20,7 @@ from typer.core import TyperCommand, TyperGroup
 from stickslip.checks import brief
 from stickslip.errors import ModelError
 from stickslip.interruption import SIGNALS
-from stickslip_command import STOPPED, leave
+from stickslip_command.stop import STOPPED, leave
 
 NOT_CONVERGED, REFUSED, DEFECT = 1, 2, 70
 _AGAIN = 0.05

@@ -15,7 +15,7 @@ from stickslip.errors import ModelError
 from stickslip.files import require_place, write
 from stickslip.io.frf import Frf, universal_file
 from stickslip.results.dataset import Dataset
-from stickslip.results.table import Frame, Tables
+from stickslip.results.table import Frame, Tables, headed
 
 
 class Exported(Protocol):
@@ -54,16 +54,6 @@ def table_of(result: Exported, tables: Tables, name: str | None) -> str:
         known = ", ".join(tables)
         raise ModelError(f"table: {brief(name)} is none of the result; it has {known}")
     return name
-
-
-def headed(frame: Frame) -> Frame:
-    """Return a table with units in its headers: "omega [rad/s]"."""
-    units = frame.attrs["units"]
-    made = frame.set_axis(
-        [name if units[name] == "1" else f"{name} [{units[name]}]" for name in frame], axis=1
-    )
-    made.attrs = {}
-    return made
 
 
 def _csv(result: Exported, file: Path, table: str | None) -> bytes:

@@ -17,8 +17,7 @@ from xlsxwriter.worksheet import Worksheet
 
 from stickslip.checks import brief
 from stickslip.errors import ModelError
-from stickslip.results.export import headed
-from stickslip.results.table import Frame, Tables
+from stickslip.results.table import Frame, Tables, headed
 
 _ROWS, _CHARACTERS = 2**20, 2**15 - 1
 """Of a sheet, and of one of its cells."""
