@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import io
+import math
 import os
-from collections.abc import Callable, Mapping
+import re
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any, ClassVar, Literal, NamedTuple, Protocol, TypeAlias
 
@@ -15,7 +17,16 @@ from stickslip.errors import ModelError
 from stickslip.files import require_place, write
 from stickslip.io.frf import Frf, universal_file
 from stickslip.results.dataset import Dataset
-from stickslip.results.table import Frame, Tables, headed
+from stickslip.results.table import Frame, Tables
+
+_ROWS, _COLUMNS, _CHARACTERS = 2**20, 2**14, 2**15 - 1
+"""Of a sheet, and of one of its cells."""
+_CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f]")
+"""What XML has no characters for."""
+_TITLE = 31
+"""Characters of the name of a sheet."""
+_ABOUT = "about"
+"""The sheet that says what the columns are."""
 
 
 class Exported(Protocol):
@@ -56,6 +67,16 @@ def table_of(result: Exported, tables: Tables, name: str | None) -> str:
     return name
 
 
+def headed(frame: Frame) -> Frame:
+    """Return a table with units in its headers: "omega [rad/s]"."""
+    units = frame.attrs["units"]
+    made = frame.set_axis(
+        [name if units[name] == "1" else f"{name} [{units[name]}]" for name in frame], axis=1
+    )
+    made.attrs = {}
+    return made
+
+
 def _csv(result: Exported, file: Path, table: str | None) -> bytes:
     # Shortest digits that lead back to the same number, whatever NumPy is told to print.
     written = headed(result.to_pandas(table)).to_csv(
@@ -72,12 +93,61 @@ def _parquet(result: Exported, file: Path, table: str | None) -> bytes:
 
 
 def _excel(result: Exported, file: Path, table: str | None) -> memoryview:
-    optional_package("xlsxwriter", f"{file}: Excel files", extra="export")
-    from stickslip.results.workbook import workbook
-
+    xlsxwriter = optional_package("xlsxwriter", f"{file}: Excel files", extra="export")
     tables = result.tables()
     names = list(tables) if table is None else [table_of(result, tables, table)]
-    return workbook(file, tables, names)
+    for name in names:
+        if tables.rows(name) >= _ROWS:
+            raise ModelError(
+                f"{file}: the table {name} has {tables.rows(name)} rows, a sheet {_ROWS - 1}; "
+                "export it as .csv or .parquet, or give table= another one"
+            )
+    content = io.BytesIO()
+    # Without temporary files: their disk may be full.
+    options = {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False}
+    book = xlsxwriter.Workbook(content, options)
+    about = book.add_worksheet(_ABOUT)
+    columns = [["sheet", "table", "column", "unit", "meaning"]]
+    for title, name in zip(_titles(names), names, strict=True):
+        frame, meanings = tables[name], tables[name].attrs["meanings"]
+        units = frame.attrs["units"].items()
+        columns += [[title, name, column, unit, meanings[column]] for column, unit in units]
+        sheet = book.add_worksheet(title)
+        _fill(sheet, file, [headed(frame)])
+        _fill(sheet, file, frame.itertuples(index=False), first=1)
+    _fill(about, file, columns)
+    book.close()
+    return content.getbuffer()
+
+
+def _fill(sheet: Any, file: Path, rows: Iterable[Iterable[Any]], first: int = 0) -> None:
+    """Write rows into a sheet: numbers, texts, and nothing for what is not a number."""
+    for row, cells in enumerate(rows, first):
+        for column, value in enumerate(cells):
+            if isinstance(value, float) and not math.isfinite(value):
+                value = "" if math.isnan(value) else str(value)
+            if isinstance(value, str) and not _fits(value):
+                raise ModelError(
+                    f"{file}: a cell cannot hold {brief(value)}; export it as .csv or .parquet"
+                )
+            sheet.write(row, column, value)
+
+
+def _fits(text: str) -> bool:
+    """Return whether a cell can hold a text, as it is."""
+    return len(text) <= _CHARACTERS and not _CONTROL.search(text)
+
+
+def _titles(names: list[str]) -> list[str]:
+    """Return names of sheets, which are short, different, and not that of the first one."""
+    titles: list[str] = []
+    for name in names:
+        title = name[:_TITLE]
+        if title in (*titles, _ABOUT):
+            mark = f"~{len(titles) + 1}"
+            title = title[: _TITLE - len(mark)] + mark
+        titles.append(title)
+    return titles
 
 
 def _matlab(result: Exported, file: Path, _: str | None) -> bytearray | memoryview:

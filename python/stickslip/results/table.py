@@ -161,13 +161,3 @@ def _in_words(values: NDArray[Any], about: Mapping[str, Any]) -> NDArray[Any]:
     return np.array([words[code] for code in values.ravel().tolist()], np.str_).reshape(
         values.shape
     )
-
-
-def headed(frame: Frame) -> Frame:
-    """Return a table with units in its headers: "omega [rad/s]"."""
-    units = frame.attrs["units"]
-    made = frame.set_axis(
-        [name if units[name] == "1" else f"{name} [{units[name]}]" for name in frame], axis=1
-    )
-    made.attrs = {}
-    return made
