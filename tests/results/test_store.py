@@ -103,7 +103,7 @@ def test_dataset(frf):
     }
     assert all(variable.attrs["long_name"] for variable in dataset.variables.values())
     flags = dataset["status"].attrs
-    assert flags["flag_values"].tolist() == list(range(12))
+    assert flags["flag_values"].tolist() == list(range(13))
     assert flags["flag_meanings"].split() == [
         "converged",
         "stalled",
