@@ -117,6 +117,7 @@ def test_dataset(frf):
         "free",
         "history",
         "other_motion",
+        "work_limit",
     ]
     assert dataset.attrs["stickslip_version"] == ss.__version__
     assert json.loads(dataset.attrs["settings"])["residual"] == 1.5
