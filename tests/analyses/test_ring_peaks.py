@@ -34,6 +34,7 @@ def ring_that_lets_go(count, order):
     return disk, (118.0, 200.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("build", [ring_of_masses, ring_that_lets_go])
 @pytest.mark.parametrize(("count", "order"), [(4, 0), (5, 4), (7, 2), (11, 8)])
 def test_the_highest_of_close_modes_is_found(build, count, order):
