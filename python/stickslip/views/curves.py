@@ -117,17 +117,14 @@ class CurveView(View[ForcedResponse]):
         draw = partial(plots.curves, results, omega_unit=omega, length_unit=length)
         return [partial(draw, dof) for dof in dofs]
 
-    def named_panels(
+    def told_apart(
         self, results: Sequence[tuple[str, ForcedResponse]], dofs: Dofs, output: OutputTable
     ) -> Panels:
-        """Return the same, with the names of several results and what tells them apart."""
-        names, curves = zip(*results, strict=True)
-        drawn = self.panels(curves, dofs, output)
-        if len(curves) == 1:
-            return drawn
+        """Return curves in one figure, with their names and what distinguishes them."""
         from stickslip.plot.curves import traits_of
 
-        return labelled(drawn, names, traits_of(curves))
+        names, curves = zip(*results, strict=True)
+        return labelled(self.panels(curves, dofs, output), names, traits_of(curves))
 
     def details(self, result: ForcedResponse, dofs: Dofs, output: OutputTable) -> Panels:
         """Return blades, slip, loops at the peak and multipliers, as far as a curve has them."""

@@ -80,14 +80,12 @@ class CycleView(View[LimitCycles]):
             *(partial(plots.cycle_multipliers, result) for result in known),
         ]
 
-    def named_panels(
+    def told_apart(
         self, results: Sequence[tuple[str, LimitCycles]], dofs: Dofs, output: OutputTable
     ) -> Panels:
-        """Return the same, with the names of several results."""
+        """Return branches in one figure, with their names and modes."""
         names, branches = zip(*results, strict=True)
         drawn = self.panels(branches, dofs, output)
-        if len(branches) == 1:
-            return drawn
         modes = [f"mode {one.settings.mode}" for one in branches]
         known = [name for name, one in results if one.arrays.known.any()]
         return [

@@ -159,15 +159,21 @@ class View(ABC, Generic[Kind]):
         ModelError
             If none of them has a picture; single ones without are left out.
         """
+        if len(results) == 1:
+            return self.panels([results[0][1]], dofs, output)
+        return self.told_apart(results, dofs, output)
+
+    def told_apart(
+        self, results: Sequence[tuple[str, Kind]], dofs: Dofs, output: OutputTable
+    ) -> Panels:
+        """Return the pictures of several results, each below its name."""
         drawn: Panels = []
         refused: ModelError | None = None
         for name, result in results:
             try:
-                own = self.panels([result], dofs, output)
+                drawn += [titled(panel, name) for panel in self.panels([result], dofs, output)]
             except ModelError as error:
                 refused = error
-            else:
-                drawn += [titled(panel, name) for panel in own] if len(results) > 1 else own
         if refused is not None and not drawn:
             raise refused
         return drawn

@@ -70,14 +70,11 @@ class ModeView(View[NonlinearModes]):
             partial(plots.mode_damping, list(results)),
         ]
 
-    def named_panels(
+    def told_apart(
         self, results: Sequence[tuple[str, NonlinearModes]], dofs: Dofs, output: OutputTable
     ) -> Panels:
-        """Return the same, with the names of several results."""
-        names, modes = zip(*results, strict=True)
-        drawn = self.panels(modes, dofs, output)
-        if len(modes) == 1:
-            return drawn
+        """Return modes in one figure, with their names and what distinguishes them."""
         from stickslip.plot.modes import names_of
 
-        return labelled(drawn, names, names_of(modes))
+        names, modes = zip(*results, strict=True)
+        return labelled(self.panels(modes, dofs, output), names, names_of(modes))

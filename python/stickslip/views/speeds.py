@@ -69,13 +69,11 @@ class SpeedView(View[SpeedResponse]):
             for dof in dict.fromkeys(one.dof for one in results)
         ]
 
-    def named_panels(
+    def told_apart(
         self, results: Sequence[tuple[str, SpeedResponse]], dofs: Dofs, output: OutputTable
     ) -> Panels:
-        """Return the same, with the names of several results."""
+        """Return responses of a degree of freedom in one figure, with their names and orders."""
         drawn = self.panels([one for _, one in results], dofs, output)
-        if len(results) == 1:
-            return drawn
         panels: Panels = []
         for panel, dof in zip(drawn, dict.fromkeys(one.dof for _, one in results), strict=True):
             own = [(name, one) for name, one in results if one.dof == dof]
