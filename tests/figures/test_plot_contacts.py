@@ -219,3 +219,19 @@ def test_the_error_of_a_single_point_is_seen(ax):
     (bar,) = (one for one in ax.collections if one.get_label() == "estimated truncation error")
     (((_, low), (_, high)),) = bar.get_segments()
     assert low < frf.amplitude("tip")[0] < high
+
+
+@pytest.mark.parametrize(("unit", "symbol"), [("Hz", "f"), ("rpm", "n")])
+def test_titles_have_the_unit_that_is_asked_for(frf, ax, unit, symbol):
+    index = frf.index(195.0)
+    factor = {"Hz": 0.5, "rpm": 30.0}[unit] / np.pi
+    said = f"{symbol} = {factor * frf.omega[index]:.5g} {unit}"
+    plot.waveform(frf, "tip", index, ax=ax, omega_unit=unit)
+    assert ax.get_title() == said
+    plot.hysteresis(frf, 0, index, ax=(loop := Figure().add_subplot()), omega_unit=unit)
+    assert f" at {said}: " in loop.get_title()
+    plot.events(frf, index, ax=(strips := Figure().add_subplot()), omega_unit=unit)
+    assert strips.get_title().startswith(f"{said}: ")
+    axes = plot.contact_forces(frf, 0, index, omega_unit=unit)
+    assert axes[0].get_title(loc="left") == f"jenkins, {said}"
+    plt.close(axes[0].figure)

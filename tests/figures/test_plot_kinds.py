@@ -127,6 +127,8 @@ def test_history(run, ax):
     assert legend(ax) == ["tip", "damper"]
     assert ax.get_ylabel() == "displacement [µm]"
     assert ax.get_title() == "ω = 170 rad/s, completed"
+    plot.history(run, "tip", ax=(other := Figure().add_subplot()), omega_unit="Hz")
+    assert other.get_title() == f"f = {85.0 / np.pi:.5g} Hz, completed"
 
 
 def test_contact_history(run, ax):

@@ -77,23 +77,26 @@ class Wanted:
         """Give the panels of one curve for a picture other than the default one."""
         from stickslip import plot
 
+        unit = self.omega_unit
         if picture == "waveform":
             index = _index(result, omega, "--waveform")
             for dof in self._dofs(result):
-                yield partial(plot.waveform, result, dof, index)
+                yield partial(plot.waveform, result, dof, index, omega_unit=unit)
         elif picture == "loop":
             counted = re.fullmatch("[0-9]{1,9}", self.contact)
             place = int(self.contact) if counted else self.contact
-            yield partial(plot.hysteresis, result, place, _index(result, omega, "--loop"))
+            index = _index(result, omega, "--loop")
+            yield partial(plot.hysteresis, result, place, index, omega_unit=unit)
         elif not isinstance(result, ExactResponse):
             raise ModelError(
                 f'--{picture}: needs exact orbits; run the study with kind = "exact", or leave it '
                 "out"
             )
         elif picture == "events":
-            yield partial(plot.events, result, _index(result, omega, "--events"))
+            index = _index(result, omega, "--events")
+            yield partial(plot.events, result, index, omega_unit=unit)
         else:
-            yield partial(plot.multipliers, result, omega_unit=self.omega_unit)
+            yield partial(plot.multipliers, result, omega_unit=unit)
 
 
 def _index(result: ForcedResponse, text: str, option: str) -> int:

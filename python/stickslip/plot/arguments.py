@@ -8,7 +8,9 @@ from typing import TypeVar
 
 from stickslip.checks import as_list, brief, text
 from stickslip.errors import ModelError
+from stickslip.plot.style import OmegaUnit, omega_scale
 from stickslip.results import ForcedResponse
+from stickslip.results.result import Result
 from stickslip.settings.variation import Variation
 
 _Kind = TypeVar("_Kind")
@@ -21,6 +23,9 @@ _SYMBOLS = {
     "tangential_stiffness": "tangential stiffness $k_t$",
     "normal_stiffness": "normal stiffness $k_n$",
 }
+
+_FREQUENCY = {"rad/s": "ω", "Hz": "f", "rpm": "n"}
+"""Symbol of a frequency by its unit."""
 
 
 def of_kind(kind: type[_Kind], result: object, entry: str = "result") -> _Kind:
@@ -93,9 +98,14 @@ def solved_points(result: ForcedResponse, index: int | Sequence[int]) -> list[in
     return points
 
 
-def at(result: ForcedResponse, index: int) -> str:
+def at(result: ForcedResponse, index: int, unit: OmegaUnit = "rad/s") -> str:
     """Return the frequency of a point as it is written in figures."""
-    return f"ω = {result.omega[index]:.5g} rad/s"
+    return frequency(result, result.omega[index], unit)
+
+
+def frequency(result: Result, omega: float, unit: OmegaUnit) -> str:
+    """Return a frequency of a result, of rotors under rpm their speed, as figures write it."""
+    return f"{_FREQUENCY[unit]} = {omega_scale(unit, result).factor * omega:.5g} {unit}"
 
 
 def label_of(variation: Variation) -> str:

@@ -46,7 +46,8 @@ def blade_bars(
         heights, title = np.nanmax(amplitudes, axis=0), "largest over frequency"
     else:
         solved_points(result, index)
-        heights, title = amplitudes[result.position(index)], at(result, index)
+        heights = amplitudes[result.position(index)]
+        title = at(result, index, options["omega_unit"])
     if options["tuned"] is not None:
         tuned = response_of_disk(options["tuned"])
         level = tuned.peak(dof, measure).amplitude

@@ -18,7 +18,7 @@ from stickslip.plot import style
 from stickslip.plot.arguments import at, dofs_of, solved_points
 from stickslip.plot.figure import figure, keywords
 from stickslip.plot.limits import limit_model
-from stickslip.plot.options import Drawing, ForceOptions, HysteresisOptions, LoopOptions
+from stickslip.plot.options import ForceOptions, HysteresisOptions, LoopOptions, Swept
 from stickslip.plot.style import Looks
 from stickslip.results import ForcedResponse
 from stickslip.results.arrays import Float
@@ -50,7 +50,7 @@ def waveform(
     of = f" of {style.named(dofs[0])}" if len(dofs) == 1 else ""
     ax.set(xlim=(0.0, 1.0), xlabel="time over period t/T")
     ax.set_ylabel(f"displacement{of} [{length.label}]")
-    ax.set_title(at(result, index), fontsize="medium")
+    ax.set_title(at(result, index, options["omega_unit"]), fontsize="medium")
 
 
 @figure
@@ -72,15 +72,17 @@ def hysteresis(
         Positions of points of the sweep, one loop each; see `ForcedResponse.index`.
     """
     indices, length = solved_points(result, index), style.LENGTH[options["length_unit"]]
+    places = [(one, at(result, one, options["omega_unit"])) for one in indices]
     if options["plane"]:
-        _traction(ax, result, contact, indices, options["samples"])
+        _traction(ax, result, contact, places, options["samples"])
         return
-    loops = [loop for one in indices for loop in _loops(result, contact, one, options["samples"])]
-    labels = [label for _, _, label in loops]
-    if len(indices) > 1:
-        where = np.repeat(indices, len(loops) // len(indices))
-        labels = [f"{at(result, i)}: {label}" for i, label in zip(where, labels, strict=True)]
-    for (u, f, _), label, colour in zip(loops, labels, style.colours(len(loops)), strict=True):
+    several = len(places) > 1
+    loops = [
+        (u, f, f"{where}: {label}" if several else label)
+        for one, where in places
+        for u, f, label in _loops(result, contact, one, options["samples"])
+    ]
+    for (u, f, label), colour in zip(loops, style.colours(len(loops)), strict=True):
         looks: Looks = {"color": colour, "lw": 1.6, "solid_joinstyle": "round", "label": label}
         ax.plot(length.factor * u, f, **looks)
     number, point = result.locate(contact)
@@ -90,15 +92,19 @@ def hysteresis(
     title = style.named(result.model.contact_names[number]) + (
         "" if point is None else f"[{point}]"
     )
-    if len(indices) == 1:
-        title += f" at {at(result, indices[0])}"
+    if not several:
+        title += f" at {places[0][1]}"
     if len(loops) == 1:
-        title += f": {labels[0]}"
+        title += f": {loops[0][2]}"
     ax.set_title(title, fontsize="medium")
 
 
 def _traction(
-    ax: Axes, result: ForcedResponse, contact: PointRef, indices: Sequence[int], samples: int
+    ax: Axes,
+    result: ForcedResponse,
+    contact: PointRef,
+    places: Sequence[tuple[int, str]],
+    samples: int,
 ) -> None:
     """Draw the traction in the plane of sliding."""
     number, point = result.locate(contact)
@@ -111,8 +117,8 @@ def _traction(
     nodes = one.points if point is None else 1
     shape = samples, nodes, len(one.components)
     loops = [
-        (at(result, i) if nodes == 1 else f"{at(result, i)}: point {node}", force[:, node])
-        for i in indices
+        (where if nodes == 1 else f"{where}: point {node}", force[:, node])
+        for i, where in places
         for force in [_closed(result.contact_force(contact, i, samples).reshape(shape))]
         for node in range(nodes)
     ]
@@ -134,7 +140,7 @@ def _traction(
 
 
 @figure
-def events(ax: Axes, /, result: ForcedResponse, index: int, **options: Unpack[Drawing]) -> None:
+def events(ax: Axes, /, result: ForcedResponse, index: int, **options: Unpack[Swept]) -> None:
     """Draw when contact points stick, slip and are open, one strip each over the period.
 
     Of exact orbits the events themselves are drawn.
@@ -157,7 +163,8 @@ def events(ax: Axes, /, result: ForcedResponse, index: int, **options: Unpack[Dr
             ax.broken_barh(*strip, color=colour, lw=0.0, label=named)
     ax.set(xlim=(0.0, 1.0), ylim=(len(names) - 0.4, -0.6), xlabel="time over period t/T")
     ax.set_yticks(range(len(names)), [*map(style.named, names)])
-    ax.set_title(f"{at(result, index)}: {count} events per period", fontsize="medium")
+    where = at(result, index, options["omega_unit"])
+    ax.set_title(f"{where}: {count} events per period", fontsize="medium")
 
 
 @keywords
@@ -178,8 +185,10 @@ def contact_forces(
     number = result.model.contact_index(contact)
     count = whole_number(options["samples"], "samples", smallest=8)
     one = result.model.contacts[number]
+    where = at(result, index, options["omega_unit"])
+    title = f"{style.named(result.model.contact_names[number])}, {where}"
     if one.components:
-        return _node_forces(result, number, index, count)
+        return _node_forces(result, number, index, count, title)
     time = np.linspace(0.0, 1.0, count + 1)
     forces = _closed(result.contact_force(number, index, count).reshape(count, -1))
     linear = _stuck_forces(result, number, index, count) if options["stuck"] else None
@@ -209,7 +218,7 @@ def contact_forces(
         # The rounding of a sum that vanishes is no motion.
         edge = max(0.05 * float(np.abs(forces).max()), 1.05 * float(np.abs(whole).max()))
         axes[-1].set(ylim=(-edge, edge), ylabel="sum\nforce [N]")
-    _finish(axes, f"{style.named(result.model.contact_names[number])}, {at(result, index)}", 3)
+    _finish(axes, title, 3)
     return axes
 
 
@@ -227,7 +236,9 @@ def _finish(axes: list[Axes], title: str, columns: int) -> None:
     axes[-1].set(xlim=(0.0, 1.0), xlabel="time over period t/T")
 
 
-def _node_forces(result: ForcedResponse, number: int, index: int, count: int) -> list[Axes]:
+def _node_forces(
+    result: ForcedResponse, number: int, index: int, count: int, title: str
+) -> list[Axes]:
     """Draw the components of the force at every node, its friction limit, slip and opening."""
     one = result.model.contacts[number]
     time = np.linspace(0.0, 1.0, count + 1)
@@ -254,11 +265,7 @@ def _node_forces(result: ForcedResponse, number: int, index: int, count: int) ->
             edge = ax.get_xaxis_transform()
             ax.fill_between(time, 0.0, 1.0, there, transform=edge, **shade)
         ax.set_ylabel(f"node {node}\nforce [N]" if one.points > 1 else "force [N]")
-    _finish(
-        axes,
-        f"{style.named(result.model.contact_names[number])}, {at(result, index)}",
-        len(colours) + 2,
-    )
+    _finish(axes, title, len(colours) + 2)
     return axes
 
 

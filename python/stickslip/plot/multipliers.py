@@ -51,7 +51,7 @@ def multipliers(ax: Axes, /, result: ExactResponse, **options: Unpack[Multiplier
     if len(chosen) > 1:
         ax.figure.colorbar(cloud, ax=ax, label=omega.label)
     else:
-        ax.set_title(at(result, chosen[0]), fontsize="medium")
+        ax.set_title(at(result, chosen[0], options["omega_unit"]), fontsize="medium")
 
 
 @figure

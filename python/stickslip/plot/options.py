@@ -56,7 +56,7 @@ class Several(Frame, Swept, total=False):
     labels: Annotated[Sequence[str] | None, None, "One per result. Default: what tells them apart."]
 
 
-class LoopOptions(Frame, total=False):
+class LoopOptions(Frame, Swept, total=False):
     """Keywords of figures of one period."""
 
     samples: Annotated[int, 512, "Instants per period."]
@@ -76,6 +76,7 @@ class HysteresisOptions(LoopOptions, total=False):
 class ForceOptions(TypedDict, total=False):
     """Keywords of `contact_forces`."""
 
+    omega_unit: Annotated[OmegaUnit, "rad/s", "Unit of frequencies."]
     stuck: Annotated[bool, True, "Draw, dashed, the forces if no contact of the model slipped."]
     samples: Annotated[int, 1024, "Instants per period."]
 
@@ -180,7 +181,7 @@ class MultiplierOptions(Swept, total=False):
     index: Annotated[int | Sequence[int] | None, None, "Points of the sweep. Default: all."]
 
 
-class BladeBarOptions(Amplitude, total=False):
+class BladeBarOptions(Amplitude, Swept, total=False):
     """Keywords of `blade_bars`."""
 
     index: Annotated[
@@ -239,13 +240,21 @@ class SafeOptions(DiameterOptions, total=False):
 
 
 class LastOptions(Drawing, total=False):
-    """Keywords of `contact_history`."""
+    """Keywords of figures of the last periods."""
 
     last: Annotated[int | None, None, "Draw this many periods, the last. Default: all kept."]
 
 
-class HistoryOptions(Frame, LastOptions, total=False):
-    """Keywords of `history` and `phase`."""
+class ContactHistoryOptions(Swept, LastOptions, total=False):
+    """Keywords of `contact_history`."""
+
+
+class HistoryOptions(Frame, ContactHistoryOptions, total=False):
+    """Keywords of `history`."""
+
+
+class PhaseOptions(Frame, LastOptions, total=False):
+    """Keywords of `phase`."""
 
 
 class PoincareOptions(Frame, total=False):

@@ -11,9 +11,16 @@ from matplotlib.axes import Axes
 from stickslip.checks import whole_number
 from stickslip.model import PointRef
 from stickslip.plot import style
-from stickslip.plot.arguments import dofs_of
+from stickslip.plot.arguments import dofs_of, frequency
 from stickslip.plot.figure import figure
-from stickslip.plot.options import HistoryOptions, LastOptions, PoincareOptions, SpectrumOptions
+from stickslip.plot.options import (
+    ContactHistoryOptions,
+    HistoryOptions,
+    PhaseOptions,
+    PoincareOptions,
+    SpectrumOptions,
+)
+from stickslip.plot.style import OmegaUnit
 from stickslip.results.transient import Transient
 
 # More lines than this would hide what they are to explain.
@@ -32,7 +39,7 @@ def history(
         ax.plot(
             result.time[part], length.factor * wave, color=colour, lw=1.0, label=style.named(one)
         )
-    _over_time(ax, result, part)
+    _over_time(ax, result, part, options["omega_unit"])
     ax.set_ylabel(
         f"displacement{f' of {style.named(dofs[0])}' if len(dofs) == 1 else ''} [{length.label}]"
     )
@@ -40,7 +47,7 @@ def history(
 
 @figure
 def contact_history(
-    ax: Axes, /, result: Transient, contact: PointRef, **options: Unpack[LastOptions]
+    ax: Axes, /, result: Transient, contact: PointRef, **options: Unpack[ContactHistoryOptions]
 ) -> None:
     """Draw contact forces over time, between the forces at which they slip."""
     part = _last(result, options["last"])
@@ -53,12 +60,12 @@ def contact_history(
     limit = result.model.contacts[number].limits[only or 0]
     if single and np.isfinite(limit):
         style.slip_limits(ax, limit)
-    _over_time(ax, result, part)
+    _over_time(ax, result, part, options["omega_unit"])
     ax.set_ylabel(f"contact force of {name} [N]")
 
 
 @figure
-def phase(ax: Axes, /, result: Transient, dof: str, **options: Unpack[HistoryOptions]) -> None:
+def phase(ax: Axes, /, result: Transient, dof: str, **options: Unpack[PhaseOptions]) -> None:
     """Draw velocity over displacement, and the states after each of the periods drawn."""
     length, part = style.LENGTH[options["length_unit"]], _last(result, options["last"])
     x, v = result.displacement(dof)[part], result.velocity(dof)[part]
@@ -132,12 +139,12 @@ def _last(result: Transient, last: int | None) -> slice:
     return slice(-min(count * result.settings.samples + 1, result.time.size), None)
 
 
-def _over_time(ax: Axes, result: Transient, part: slice) -> None:
+def _over_time(ax: Axes, result: Transient, part: slice, unit: OmegaUnit) -> None:
     time = result.time[part]
     if time.size > 1:
         ax.set_xlim(time[0], time[-1])
     ax.set_xlabel("time [s]")
-    ax.set_title(f"ω = {result.omega:.5g} rad/s, {result.status}", fontsize="medium")
+    ax.set_title(f"{frequency(result, result.omega, unit)}, {result.status}", fontsize="medium")
 
 
 def _phase_axes(ax: Axes, dof: str, unit: str) -> None:

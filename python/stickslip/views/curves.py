@@ -135,7 +135,7 @@ def _details(result: ForcedResponse, dofs: Dofs, output: OutputTable) -> Iterato
     length, omega = output.length_unit, output.omega_unit
     if isinstance(result.model, MistunedDisk):
         for dof in _of_sectors(result.model, dofs):
-            yield partial(plots.blade_bars, result, dof, length_unit=length)
+            yield partial(plots.blade_bars, result, dof, omega_unit=omega, length_unit=length)
             yield partial(plots.blade_curves, result, dof, omega_unit=omega, length_unit=length)
     contacts = result.model.contacts
     if contacts:
@@ -146,11 +146,12 @@ def _details(result: ForcedResponse, dofs: Dofs, output: OutputTable) -> Iterato
             yield partial(plots.slip, result, omega_unit=omega)
         at = int(np.nanargmax(result.amplitude(dofs[0])))
         if any(not one.core_phases for one in contacts) and points <= _SLIP_POINTS:
-            yield partial(plots.events, result, at)
+            yield partial(plots.events, result, at, omega_unit=omega)
         shares = [result.slip_fraction(contact)[at].max() for contact in range(len(contacts))]
         # The contacts that slip most tell most.
         for contact in sorted(np.argsort(shares)[::-1][:_LOOPS].tolist()):
-            yield partial(plots.hysteresis, result, contact, at, length_unit=length)
+            drawn = partial(plots.hysteresis, result, contact, at, omega_unit=omega)
+            yield partial(drawn, length_unit=length)
     if isinstance(result, ExactResponse):
         yield partial(plots.multipliers, result, omega_unit=omega)
 

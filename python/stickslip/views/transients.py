@@ -66,12 +66,14 @@ class TransientView(View[Transient]):
         """Return histories of DOFs and contacts, section and spectrum of the first DOF."""
         drawn: Panels = []
         for result in results:
-            unit, contacts = output.length_unit, result.model.contact_names[:2]
-            drawn += [partial(plots.history, result, dof, length_unit=unit) for dof in dofs]
-            drawn += [partial(plots.contact_history, result, contact) for contact in contacts]
+            unit, omega = output.length_unit, output.omega_unit
+            history = partial(plots.history, result, omega_unit=omega, length_unit=unit)
+            drawn += [partial(history, dof=dof) for dof in dofs]
+            forces = partial(plots.contact_history, result, omega_unit=omega)
+            drawn += [partial(forces, contact=one) for one in result.model.contact_names[:2]]
             drawn.append(partial(plots.poincare, result, dofs[0], length_unit=unit))
             if result.kept_periods:
-                drawn.append(partial(plots.spectrum, result, dofs[0], omega_unit=output.omega_unit))
+                drawn.append(partial(plots.spectrum, result, dofs[0], omega_unit=omega))
         return drawn
 
     def details(self, result: Transient, dofs: Dofs, output: OutputTable) -> Panels:
