@@ -356,3 +356,20 @@ def test_a_large_undamped_chain_is_judged_while_its_modes_are_affordable(dofs):
     span = (frequency * 0.99, frequency * 1.01)
     found = model.problem.unbounded(span)
     assert (found[5] is not None) == (dofs < 1000)
+
+
+def test_exact_orbits_beside_a_resonance_without_bound():
+    stiffness = 1e4 * (2.0 * np.eye(3) - np.eye(3, k=1) - np.eye(3, k=-1))
+    structure = ss.Structure(np.eye(3), stiffness, None, ["a", "b", "c"])
+    damper = ss.Jenkins("a", stiffness=5e3, slip_force=5.0)
+    orbits = ss.exact_response(
+        ss.Model(structure, [damper], [ss.Force("b", 30.0)]), np.linspace(70.0, 80.0, 21)
+    )
+    assert orbits.converged.all()
+    with pytest.warns(UserWarning, match="neither damping nor friction bounds"):
+        peak = orbits.peak("b")
+    assert peak.amplitude == np.inf
+    assert peak.omega == pytest.approx(100.0 * np.sqrt(2.0 - np.sqrt(2.0)), rel=1e-9)
+    damped = ss.Structure(np.eye(3), stiffness, ss.ModalDamping(1e-3), ["a", "b", "c"])
+    model = ss.Model(damped, [damper], [ss.Force("b", 30.0)])
+    assert np.isfinite(ss.exact_response(model, np.linspace(70.0, 80.0, 21)).peak("b").amplitude)

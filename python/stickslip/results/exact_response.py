@@ -34,7 +34,7 @@ from stickslip.results.energy import Energy, apparent_work
 from stickslip.results.events import KINDS, ContactStates, Events, states_of
 from stickslip.results.fields import Computed, column
 from stickslip.results.forced_response import ForcedResponse
-from stickslip.results.peaks import RIVAL, Peak, highest, of_orbits
+from stickslip.results.peaks import RIVAL, Peak, highest, of_orbits, without_bound
 from stickslip.results.periodic import key_of
 from stickslip.results.stability import FloquetStability, stability_of
 from stickslip.results.status import Status
@@ -249,10 +249,14 @@ class ExactResponse(FloquetStability, ForcedResponse):
         return states_of(self.events(index), columns, 2.0 * np.pi / self.omega[index], own)
 
     def peak(self, dof: str, measure: Measure = "half_range") -> Peak:
-        """Return the highest point of the response curve, refined on exact orbits."""
+        """Return the highest point of the response curve, refined on exact orbits.
+
+        Its amplitude is infinite, with a warning, where neither damping nor friction bounds it.
+        """
         key = key_of(dof, measure)
         if key not in self._peaks:
-            self._peaks[key] = highest(self, dof, measure, of_orbits)
+            unbounded = without_bound(self, dof)
+            self._peaks[key] = unbounded or highest(self, dof, measure, of_orbits)
         return self._peaks[key]
 
     def _peaks_of(self, dofs: Sequence[str], measure: Measure) -> list[Peak]:
@@ -260,7 +264,8 @@ class ExactResponse(FloquetStability, ForcedResponse):
 
     def _highest_of(self, dofs: Sequence[str], measure: Measure) -> tuple[int, Peak]:
         tops = np.nanmax([self.amplitude(dof, measure) for dof in dofs], axis=1)
-        rivals = np.flatnonzero(tops >= RIVAL * tops.max())
+        grows = [self._unbounded[self.model.structure.index(dof)] is not None for dof in dofs]
+        rivals = np.flatnonzero((tops >= RIVAL * tops.max()) | grows)
         peaks = {at: self.peak(dofs[at], measure) for at in rivals.tolist()}
         return max(peaks.items(), key=lambda one: one[1].amplitude)
 

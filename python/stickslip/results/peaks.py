@@ -149,8 +149,13 @@ def highest(result: Peaks, dof: str, measure: Measure, refine: Refine) -> Peak:
 
 def _of_branch(result: Peaks, dof: str, measure: Measure) -> Peak:
     """Return the highest point of a branch, unless nothing bounds the response on any."""
+    return without_bound(result, dof) or along(result, dof, measure)
+
+
+def without_bound(result: Peaks, dof: str) -> Peak | None:
+    """Return the peak of a degree of freedom that nothing bounds; None if something does."""
     omega = result._unbounded[result.model.structure.index(dof)]
-    return along(result, dof, measure) if omega is None else _without_bound(dof, omega)
+    return None if omega is None else _without_bound(dof, omega)
 
 
 def along(result: Peaks, dof: str, measure: Measure) -> Peak:
