@@ -14,11 +14,11 @@ fn along<R>(
     contact: usize,
     displacement: &Array2<'_, Complex64>,
     residual: Residual,
-    march: Option<usize>,
+    march: (usize, bool),
     work: impl FnOnce(&dyn ContactLaw, Motion<'_>) -> R,
 ) -> PyResult<R> {
     let known = problem.assuming(residual).map_err(refused)?;
-    let model = evaluated(known, march).map_err(refused)?;
+    let model = evaluated(known, march.0, march.1).map_err(refused)?;
     // A normal load that varies does not change its sign with the motion.
     let odd = model.laws()[contact].is_odd() && residual.is_symmetric();
     let (harmonics, displacement) = coefficients(displacement, odd)?;
@@ -35,7 +35,7 @@ pub fn contact_force<'py>(
     contact: usize,
     displacement: Array2<'py, Complex64>,
     #[pyo3(from_py_with = residual)] residual: Residual,
-    march: Option<usize>,
+    march: (usize, bool),
     samples: usize,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let points = displacement.as_array().nrows();
@@ -56,7 +56,7 @@ pub fn contact_phases<'py>(
     contact: usize,
     displacement: Array2<'py, Complex64>,
     #[pyo3(from_py_with = residual)] residual: Residual,
-    march: Option<usize>,
+    march: (usize, bool),
 ) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray2<f64>>)> {
     let points = displacement.as_array().nrows();
     let phases =

@@ -185,6 +185,7 @@ pub fn sensitivity<'py>(
     #[pyo3(from_py_with = measure)] measure: Measure,
     causes: Vec<CauseArgument>,
     samples: Vec<usize>,
+    all_marched: bool,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let model: &Model = &problem.model;
     let causes: Vec<Cause> =
@@ -210,7 +211,7 @@ pub fn sensitivity<'py>(
                 .flat_map(|i| series(sample_table.harmonics(), |k| amplitude(n, k, i)))
                 .collect();
             let solution = Unknowns::new(sample_table.harmonics().clone(), values);
-            let marched = evaluated(&own, Some(samples[n]).filter(|&march| march > 0))?;
+            let marched = evaluated(&own, samples[n], all_marched)?;
             let slopes = Linearised::new(&marched, &sample_table, residual, omega, &solution)
                 .and_then(|mut linearised| linearised.amplitude(dof, measure, &causes));
             rows.extend(slopes?.1);

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use stickslip_core::balance::{Evaluation, HarmonicChoice, Method, SampleChoice, Settings};
 use stickslip_core::contact::Residual;
 use stickslip_core::fourier::Measure;
-use stickslip_core::model::{Model, ParameterMode, Variation};
+use stickslip_core::model::{MarchedLaws, Model, ParameterMode, Variation};
 use stickslip_core::orbit::OrbitSettings;
 use stickslip_core::solve::{FirstJacobian, NewtonSettings};
 
@@ -89,10 +89,16 @@ pub fn variation(given: &Bound<'_, PyAny>) -> PyResult<Variation> {
     Ok(Variation::Law { parameter, contacts: given.get_item("contacts")?.extract()?, common })
 }
 
-/// The model with its laws evaluated exactly, or marched through some samples per period.
+/// The model as it was solved: of its laws all, or those without a form of their own, were marched through
+/// `samples` per period, if any.
 pub fn evaluated(
     model: &Arc<Model>,
-    march: Option<usize>,
+    samples: usize,
+    all: bool,
 ) -> Result<Arc<Model>, stickslip_core::Error> {
-    march.map_or_else(|| Ok(Arc::clone(model)), |samples| model.marched(samples).map(Arc::new))
+    let laws = if all { MarchedLaws::All } else { MarchedLaws::Formless };
+    match samples {
+        0 => Ok(Arc::clone(model)),
+        _ => model.marched(samples, laws).map(Arc::new),
+    }
 }

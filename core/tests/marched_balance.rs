@@ -13,7 +13,7 @@ use stickslip_core::balance::{
 };
 use stickslip_core::contact::Jenkins;
 use stickslip_core::fourier::Measure;
-use stickslip_core::model::{Contact, Model};
+use stickslip_core::model::{Contact, MarchedLaws, Model};
 use stickslip_core::motion::ModalSystem;
 use stickslip_core::solve::FirstJacobian;
 use stickslip_core::structure::{HarmonicLoad, Structure};
@@ -42,7 +42,7 @@ fn marched_sweeps_approach_the_exact_one() {
     let fixed = Settings { harmonics: HarmonicChoice::Fixed(9), ..Settings::default() };
     let curve = solve(&exact, fixed);
     let errors = [64, 256, 1024].map(|samples| {
-        let model = exact.marched(samples).unwrap();
+        let model = exact.marched(samples, MarchedLaws::All).unwrap();
         let marched = solve(&model, fixed);
         assert_eq!(marched.profile.homotopies, 0);
         if samples == 1024 {
@@ -69,7 +69,10 @@ fn a_peak_is_refined_with_the_same_evaluation() {
     let peak = |model: &Model| {
         refine_peak(model, fixed, 1, Measure::HalfRange, [185.0, 190.0, 200.0], &|_| true).unwrap()
     };
-    let (coarse, fine) = (peak(&exact.marched(40).unwrap()), peak(&exact.marched(4096).unwrap()));
+    let (coarse, fine) = (
+        peak(&exact.marched(40, MarchedLaws::All).unwrap()),
+        peak(&exact.marched(4096, MarchedLaws::All).unwrap()),
+    );
     assert!((fine.1 / peak(&exact).1 - 1.0).abs() < 1e-5);
     assert!((coarse.1 / peak(&exact).1 - 1.0).abs() > 1e-4);
 }
@@ -99,7 +102,7 @@ fn a_law_without_closed_form_runs_through_the_whole_balance() {
     let omega: Vec<f64> = (0..40).map(|i| 1.0 + 0.15 * f64::from(i)).collect();
     let run =
         |model: &Model| sweep(ForcedBalance::new(model, fixed, &[0, 1]).unwrap(), &omega).unwrap();
-    let sampled = |coupled| run(&build(coupled).marched(256).unwrap());
+    let sampled = |coupled| run(&build(coupled).marched(256, MarchedLaws::All).unwrap());
     let (one, two) = (sampled(true), sampled(false));
     // By itself it is sampled finely, and no motion from event to event can follow it.
     let alone = build(true);
@@ -122,10 +125,11 @@ fn a_law_without_closed_form_runs_through_the_whole_balance() {
 
 #[test]
 fn too_few_samples_are_named() {
-    let refused = |samples: usize| snecma_beam(1.0).model().marched(samples).err().unwrap();
+    let refused =
+        |samples: usize| snecma_beam(1.0).model().marched(samples, MarchedLaws::All).err().unwrap();
     assert!(refused(6).to_string().contains("samples = 6: must be an even number from 8"));
     assert!(refused(33).to_string().contains("samples = 33"));
-    let model = snecma_beam(1.0).model().marched(60).unwrap();
+    let model = snecma_beam(1.0).model().marched(60, MarchedLaws::All).unwrap();
     let ask = |highest: usize| {
         let harmonics = HarmonicChoice::Fixed(highest);
         let settings = Settings { harmonics, ..Settings::default() };

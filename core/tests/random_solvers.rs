@@ -9,7 +9,7 @@ use proptest::prelude::*;
 use stickslip_core::balance::{
     single_harmonic, sweep, ForcedBalance, HarmonicChoice, Method, PointStatus, Settings, Solution,
 };
-use stickslip_core::model::Model;
+use stickslip_core::model::{MarchedLaws, Model};
 use stickslip_core::solve::FirstJacobian;
 
 fn observe(model: &Model) -> Vec<usize> {
@@ -51,7 +51,7 @@ proptest! {
         }
         // The march costs more: only where the lowest modes are.
         let few = &omega[4..9];
-        let marched = solve(&model.marched(1024).unwrap(), 9, Method::Newton, few);
+        let marched = solve(&model.marched(1024, MarchedLaws::All).unwrap(), 9, Method::Newton, few);
         let worst = difference(&marched, &solve(&model, 9, Method::Newton, few))?;
         prop_assert!(worst < 1e-3, "marched: {}", worst);
         prop_assert!(marched.points.iter().all(|p| p.contacts.iter().all(|c| c.dissipation >= 0.0)));

@@ -13,12 +13,12 @@ use stickslip_core::balance::{
     sweep, sweep_range, Evaluation, ForcedBalance, HarmonicChoice, Point, PointStatus,
     SampleChoice, Settings, Solution,
 };
-use stickslip_core::contact::Jenkins;
+use stickslip_core::contact::{BoucWen, ContactLaw, Jenkins};
 use stickslip_core::design::{peak_curve, summits, PeakQuery, Target};
 use stickslip_core::fourier::{amplitude, Harmonics, Measure, SampleTable};
-use stickslip_core::model::{Model, SectorContact, Variation};
+use stickslip_core::model::{Contact, MarchedLaws, Model, SectorContact, Variation};
 use stickslip_core::orbit::{orbit_sweep, OrbitSettings, PeriodicOrbits};
-use stickslip_core::structure::{HarmonicLoad, RingCoupling};
+use stickslip_core::structure::{HarmonicLoad, RingCoupling, Structure};
 
 fn fixed(highest: usize, tolerance: f64) -> Settings {
     Settings { harmonics: HarmonicChoice::Fixed(highest), tolerance, ..Settings::default() }
@@ -142,7 +142,8 @@ fn given_samples_are_taken_as_they_are() {
     let model = snecma_beam(20.313).model();
     let omega = grid(150.0, 250.0, 30);
     let curve = solve(&model, marched(fixed(9, 1e-3), SampleChoice::Fixed(90)), &[0, 1], &omega);
-    let same = solve(&model.marched(90).unwrap(), fixed(9, 1e-3), &[0, 1], &omega);
+    let same =
+        solve(&model.marched(90, MarchedLaws::All).unwrap(), fixed(9, 1e-3), &[0, 1], &omega);
     for (p, q) in curve.points.iter().zip(&same.points) {
         assert_eq!((p.samples, q.samples), (Some(90), None));
         assert_eq!(p.displacement, q.displacement);
@@ -154,6 +155,50 @@ fn given_samples_are_taken_as_they_are() {
         }
     }
     assert!(curve.points.iter().any(|p| p.sampling_error[1] > 0.0));
+}
+
+/// A law that has no form of its own is marched; the exact integrals of others stay exact beside it.
+#[test]
+fn laws_with_a_form_keep_it_beside_marched_ones() {
+    let beam = snecma_beam(20.313);
+    let beside = |matrix: &Mat<f64>, own: f64| {
+        Mat::from_fn(4, 4, |i, j| match (i, j) {
+            (3, 3) => own,
+            (3, _) | (_, 3) => 0.0,
+            _ => matrix[(i, j)],
+        })
+    };
+    let structure = Structure::new(
+        beside(&beam.mass, 1.0).as_ref(),
+        beside(&beam.damping, 10.0).as_ref(),
+        beside(&beam.stiffness, 4e4).as_ref(),
+    );
+    let at = |dof: usize| Mat::from_fn(1, 4, |_, j| f64::from(u8::from(j == dof)));
+    let laws: [Box<dyn ContactLaw>; 2] = [
+        Box::new(Jenkins::new(STIFFNESS, SLIP_FORCE).unwrap()),
+        Box::new(BoucWen::new(1e4, 5.0, 1.0, 0.5).unwrap()),
+    ];
+    let contacts = laws.into_iter().zip([0, 3]).map(|(law, dof)| Contact { law, rows: at(dof) });
+    let force = |dof: usize| match dof {
+        1 => c64::new(20.313, 0.0),
+        3 => c64::new(10.0, 0.0),
+        _ => c64::new(0.0, 0.0),
+    };
+    let load = HarmonicLoad { harmonic: 1, amplitude: (0..4).map(force).collect() };
+    let mixed = Model::new(structure.unwrap(), contacts.collect(), vec![load]).unwrap();
+    let omega = grid(170.0, 210.0, 9);
+    let settings = fixed(9, 1e-2);
+    let both = solve(&mixed, settings, &[1], &omega);
+    let marched = solve(&mixed, marched(settings, SampleChoice::Auto), &[1], &omega);
+    let alone = solve(&beam.model(), settings, &[1], &omega);
+    let (mut worst, mut sampled) = (0.0_f64, 0.0_f64);
+    for ((p, r), q) in both.points.iter().zip(&marched.points).zip(&alone.points) {
+        assert!(p.samples.is_some() && p.is_solved());
+        worst = worst.max(apart(p, q, 0));
+        sampled = sampled.max(apart(r, q, 0));
+    }
+    assert!(worst < 1e-8, "{worst:e}");
+    assert!(sampled > 1e-5, "{sampled:e}");
 }
 
 #[test]
@@ -275,6 +320,12 @@ fn ranges_and_summits_choose_samples_too() {
         assert!((own.slope / exact.slope - 1.0).abs() < 0.05);
     }
     let given = summit(marched(fixed(9, 1e-3), SampleChoice::Fixed(512)));
-    let same = summits(&model.marched(512).unwrap(), fixed(9, 1e-3), &quest, None, &|_| true);
+    let same = summits(
+        &model.marched(512, MarchedLaws::All).unwrap(),
+        fixed(9, 1e-3),
+        &quest,
+        None,
+        &|_| true,
+    );
     assert_eq!(given.amplitude, same.unwrap().summits[0].amplitude);
 }

@@ -107,7 +107,7 @@ def contact_force(
     contact: int,
     displacement: Complex,
     residual: Residual,
-    march: int | None,
+    march: tuple[int, bool],
     samples: int,
 ) -> Float: ...
 def contact_phases(
@@ -115,7 +115,7 @@ def contact_phases(
     contact: int,
     displacement: Complex,
     residual: Residual,
-    march: int | None,
+    march: tuple[int, bool],
 ) -> tuple[Float, Float]: ...
 def single_harmonic(
     problem: Problem,
@@ -265,6 +265,7 @@ def sensitivity(
     measure: str,
     causes: Sequence[str | tuple[int, int | None, str]],
     samples: NDArray[np.int64],
+    all_marched: bool,
 ) -> Float: ...
 
 class NonlinearMode:

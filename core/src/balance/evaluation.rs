@@ -1,6 +1,6 @@
 //! A model under the evaluations of its laws that a balance asks for.
 
-use crate::model::Model;
+use crate::model::{MarchedLaws, Model};
 use crate::Error;
 use std::collections::BTreeMap;
 use std::ops::Deref;
@@ -32,16 +32,17 @@ impl Deref for Evaluated<'_> {
     }
 }
 
-/// A model with its laws marched through every number of samples that has been asked for. All of
+/// A model with its laws, or those without a form of their own, marched through every number of samples that has been asked for. All of
 /// them share one decomposition.
 pub(super) struct Evaluations<'a> {
     model: Evaluated<'a>,
+    laws: MarchedLaws,
     marched: BTreeMap<usize, Arc<Model>>,
 }
 
 impl<'a> Evaluations<'a> {
-    pub(super) fn new(model: Evaluated<'a>) -> Self {
-        Self { model, marched: BTreeMap::new() }
+    pub(super) fn new(model: Evaluated<'a>, laws: MarchedLaws) -> Self {
+        Self { model, laws, marched: BTreeMap::new() }
     }
 
     /// The model under `samples` per period, or as it was given.
@@ -53,7 +54,7 @@ impl<'a> Evaluations<'a> {
         if let Some(known) = self.marched.get(&samples) {
             return Ok(Evaluated::Made(Arc::clone(known)));
         }
-        let marched = Arc::new(self.model.marched(samples)?);
+        let marched = Arc::new(self.model.marched(samples, self.laws)?);
         self.marched.insert(samples, Arc::clone(&marched));
         Ok(Evaluated::Made(marched))
     }

@@ -112,7 +112,7 @@ impl<'a> ForcedBalance<'a> {
             forced,
             tables: Tables::default(),
             neighbour: Neighbour::default(),
-            evaluations: Evaluations::new(model.clone()),
+            evaluations: Evaluations::new(model.clone(), settings.evaluation.marched()),
             model,
             scale: Scale::default(),
             estimated: true,

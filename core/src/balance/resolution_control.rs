@@ -79,17 +79,16 @@ impl ResolutionControl {
 
     /// Whether the number of samples is chosen.
     pub(super) fn samples_climb(&self) -> bool {
-        self.settings.evaluation == Evaluation::Marched(SampleChoice::Auto)
+        self.settings.evaluation.samples() == Some(SampleChoice::Auto)
     }
 
     /// What the next point begins with.
     pub(super) fn first(&self) -> Resolution {
         let harmonics = self.orders[self.level.order.min(self.orders.len() - 1)];
-        let samples = match self.settings.evaluation {
-            Evaluation::Direct => None,
-            Evaluation::Marched(SampleChoice::Fixed(samples)) => Some(samples),
-            Evaluation::Marched(SampleChoice::Auto) => Some(self.level.samples),
-        };
+        let samples = self.settings.evaluation.samples().map(|choice| match choice {
+            SampleChoice::Fixed(samples) => samples,
+            SampleChoice::Auto => self.level.samples,
+        });
         self.allowed(harmonics, samples)
     }
 

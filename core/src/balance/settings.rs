@@ -1,7 +1,7 @@
 //! Settings of a forced response, each with its default.
 
 use crate::contact::Residual;
-use crate::model::Model;
+use crate::model::{MarchedLaws, Model};
 use crate::solve::{FirstJacobian, NewtonSettings};
 use crate::Error;
 
@@ -40,8 +40,29 @@ pub enum Evaluation {
     /// As the laws know best: by exact integrals, if they have them.
     #[default]
     Direct,
-    /// Marched through equidistant samples (see [`crate::contact::Aft`]).
+    /// The same, and laws that have none marched.
+    Mixed(SampleChoice),
+    /// All marched through equidistant samples (see [`crate::contact::Aft`]).
     Marched(SampleChoice),
+}
+
+impl Evaluation {
+    /// How many samples per period are taken, if any.
+    pub(super) fn samples(self) -> Option<SampleChoice> {
+        match self {
+            Self::Direct => None,
+            Self::Mixed(samples) | Self::Marched(samples) => Some(samples),
+        }
+    }
+
+    /// Which laws are marched where there are samples.
+    #[must_use]
+    pub fn marched(self) -> MarchedLaws {
+        match self {
+            Self::Direct | Self::Mixed(_) => MarchedLaws::Formless,
+            Self::Marched(_) => MarchedLaws::All,
+        }
+    }
 }
 
 /// How many samples per period a march takes.
@@ -161,7 +182,7 @@ impl Settings {
     pub(super) fn suited(self, model: &Model) -> Self {
         let formless = model.laws().iter().any(|law| law.closed_form().is_none());
         if formless && self.evaluation == Evaluation::Direct {
-            return Self { evaluation: Evaluation::Marched(SampleChoice::Auto), ..self };
+            return Self { evaluation: Evaluation::Mixed(SampleChoice::Auto), ..self };
         }
         self
     }
@@ -169,9 +190,11 @@ impl Settings {
     /// The same settings with what is chosen automatically fixed.
     #[must_use]
     pub fn at(self, resolution: Resolution) -> Self {
-        let evaluation = match resolution.samples {
-            Some(samples) => Evaluation::Marched(SampleChoice::Fixed(samples)),
-            None => self.evaluation,
+        let fixed = resolution.samples.map(SampleChoice::Fixed);
+        let evaluation = match (self.evaluation, fixed) {
+            (Evaluation::Marched(_), Some(samples)) => Evaluation::Marched(samples),
+            (_, Some(samples)) => Evaluation::Mixed(samples),
+            (given, None) => given,
         };
         Self { harmonics: HarmonicChoice::Fixed(resolution.harmonics), evaluation, ..self }
     }
@@ -179,9 +202,9 @@ impl Settings {
     /// Samples per period that were given.
     #[must_use]
     pub fn fixed_samples(&self) -> Option<usize> {
-        match self.evaluation {
-            Evaluation::Marched(SampleChoice::Fixed(samples)) => Some(samples),
-            _ => None,
+        match self.evaluation.samples() {
+            Some(SampleChoice::Fixed(samples)) => Some(samples),
+            Some(SampleChoice::Auto) | None => None,
         }
     }
 
@@ -189,7 +212,7 @@ impl Settings {
     #[must_use]
     pub fn is_automatic(&self) -> bool {
         self.harmonics == HarmonicChoice::Auto
-            || self.evaluation == Evaluation::Marched(SampleChoice::Auto)
+            || self.evaluation.samples() == Some(SampleChoice::Auto)
     }
 
     /// Checks the settings against the highest harmonic that laws evaluated as they are resolve:
@@ -199,10 +222,10 @@ impl Settings {
     /// Too few samples for the harmonics that may be kept.
     pub fn check_resolution(&self, resolved: usize) -> Result<(), Error> {
         let (entry, kept) = self.harmonics.highest(self.max_harmonics);
-        let resolved = match self.evaluation {
-            Evaluation::Direct => resolved,
-            Evaluation::Marched(SampleChoice::Fixed(samples)) => (samples / 2).saturating_sub(1),
-            Evaluation::Marched(SampleChoice::Auto) => {
+        let resolved = match self.evaluation.samples() {
+            None => resolved,
+            Some(SampleChoice::Fixed(samples)) => (samples / 2).saturating_sub(1),
+            Some(SampleChoice::Auto) => {
                 let most = self.max_samples;
                 let least = resolving(kept);
                 if most < least || most > MOST_SAMPLES || !most.is_power_of_two() {

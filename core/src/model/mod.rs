@@ -39,6 +39,15 @@ const NO_LIMIT: f64 = 1e-13;
 /// DOFs up to which the modes of a structure that nothing damps are found in any case: a second of work.
 const MOST_UNDAMPED: usize = 1000;
 
+/// Which laws are marched through samples.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MarchedLaws {
+    /// All of them.
+    All,
+    /// Those that have no form of their own.
+    Formless,
+}
+
 /// One contact: its law and the rows of B that give its relative displacements.
 #[derive(Debug)]
 pub struct Contact<R = Mat<f64>> {
@@ -175,15 +184,17 @@ impl Model {
         Ok(Self { structure, ports, laws, points, compliance, modal_base, body, states })
     }
 
-    /// The same problem with every law evaluated by marching through `samples` instants per period
+    /// The same problem with laws evaluated by marching through `samples` instants per period
     /// (see [`Aft`]), on the same decomposition.
     ///
     /// # Errors
     /// An odd or too small number of samples.
-    pub fn marched(&self, samples: usize) -> Result<Self, Error> {
+    pub fn marched(&self, samples: usize, which: MarchedLaws) -> Result<Self, Error> {
         let mut laws: Vec<Box<dyn ContactLaw>> = Vec::with_capacity(self.laws.len());
         for law in &self.laws {
-            laws.push(Box::new(Aft::new(law.with_scaled_stiffness(1.0), samples)?));
+            let own = law.with_scaled_stiffness(1.0);
+            let keeps_form = which == MarchedLaws::Formless && law.closed_form().is_some();
+            laws.push(if keeps_form { own } else { Box::new(Aft::new(own, samples)?) });
         }
         self.with_laws(laws)
     }

@@ -260,9 +260,9 @@ def _start_of_march(model: Model) -> Diagnostic | None:
 
 def _samples(model: Model, settings: ForcedSettings, arrays: Arrays) -> Diagnostic | None:
     taken = arrays.samples[arrays.solved]
+    sampled = listed(list(dict.fromkeys(model.problem.laws_sampled)))
     if settings.march is None and not taken.any():
-        sampled = list(dict.fromkeys(model.problem.laws_sampled))
-        return told("samples/fixed", _laws=listed(sampled)) if sampled else None
+        return told("samples/fixed", _laws=sampled) if sampled else None
     if not taken.size:
         return None
     least, most = int(taken.min()), int(taken.max())
@@ -272,7 +272,8 @@ def _samples(model: Model, settings: ForcedSettings, arrays: Arrays) -> Diagnost
         least=least,
         most=most,
         _count=f"{least}" if least == most else f"{least} to {most}",
-        _chosen=chosen if settings.march == "auto" else "",
+        _chosen="" if isinstance(settings.march, int) else chosen,
+        _of=f" of {sampled}" if settings.march is None else "",
     )
 
 

@@ -142,7 +142,7 @@ def _loop(
     series = np.ascontiguousarray(measured.series[np.newaxis])
     residual = "centred" if settings.residual is None else settings.residual
     force = _core.contact_force(
-        model.problem, model.law_index(number), series, residual, None, measured.force.size
+        model.problem, model.law_index(number), series, residual, (0, False), measured.force.size
     )
     return _Found(np.ravel(force), measured.harmonics)
 

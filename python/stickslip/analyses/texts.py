@@ -51,8 +51,8 @@ TEXTS = {
     "harmonics/peaks": "Harmonics up to {most} were kept.",
     "harmonics/chosen": "Harmonics up to {most} were kept{_several}, chosen at each peak to a "
     "tolerance of {_tolerance:g}.",
-    "samples": "The contact forces were marched through {_count} samples per period{_chosen}; the "
-    "error of the sampling is part of the error estimate.",
+    "samples": "The contact forces{_of} were marched through {_count} samples per period{_chosen}; "
+    "the error of the sampling is part of the error estimate.",
     "samples/fixed": "The contact force of {_laws} was taken at 1024 instants per period, whose "
     "error is no part of the error estimate; evaluation='marched' chooses their number by it.",
     "method/single": "The motion was taken to be harmonic, and of every contact force its first "

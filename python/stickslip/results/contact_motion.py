@@ -18,7 +18,9 @@ from stickslip.results.peaks import Peaks
 if TYPE_CHECKING:
     from stickslip import _core
 
-    _Evaluation: TypeAlias = tuple[_core.Problem, int, Complex, str | float | None, int | None]
+    _Evaluation: TypeAlias = tuple[
+        _core.Problem, int, Complex, str | float | None, tuple[int, bool]
+    ]
 
 
 _INSTANTS = 4096
@@ -61,14 +63,14 @@ class ContactMotion(Peaks):
         """Give what the core evaluates the laws of a contact, or a point, by at a solved point."""
         arrays, (number, point) = self.arrays, self.locate(contact)
         kept = int(arrays.harmonics[position]) + 1
-        samples = int(arrays.samples[position]) or None
+        march = int(arrays.samples[position]), self.settings.march is not None
         own = self.model.contacts[number]
         every = range(own.points) if point is None else [point]
         for part in every if own.by_point else [None]:
             columns = self._columns(number, part)
             series = np.ascontiguousarray(arrays.contact_displacement[position, :kept, columns].T)
             law = self.model.law_index(number, part or 0)
-            yield self.model.problem, law, series, self.settings.residual, samples
+            yield self.model.problem, law, series, self.settings.residual, march
 
     def resultant(self, contact: ContactRef, index: int, samples: int = 512) -> Float:
         """Return one period of the sum of the forces of a contact, shape (samples,) [N].

@@ -240,6 +240,7 @@ class Sensitivities(ContactMotion):
                     measure,
                     causes,
                     arrays.samples[solved],
+                    self.settings.march is not None,
                 )
             except ValueError as error:
                 raise ModelError(f"sensitivity of {dof!r}: {error}") from error

@@ -175,9 +175,9 @@ class BalanceSettings(HarmonicSettings):
     )
     evaluation: Annotated[Literal["exact", "marched"], ONE_OF] = Field(
         default="exact",
-        description="Friction laws by exact Fourier integrals, or marched through equidistant "
-        "samples: the alternating frequency/time scheme, for comparisons and for laws without a "
-        "closed form. Its sampling error is part of the error estimate.",
+        description="Friction laws by exact Fourier integrals, or all marched through equidistant "
+        "samples: the alternating frequency/time scheme, for comparisons. Laws without a closed "
+        "form are marched in any case. The sampling error is part of the error estimate.",
     )
     samples: Harmonics = Field(
         default="auto",

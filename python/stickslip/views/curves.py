@@ -87,7 +87,7 @@ class CurveView(View[ForcedResponse]):
         ]
         if result.samples.any():
             march = result.settings.march
-            samples = _kept(result, result.samples) if march == "auto" else f"{march}"
+            samples = f"{march}" if isinstance(march, int) else _kept(result, result.samples)
             rows.append(("samples", f"{samples} per period"))
         rows += bound_rows(result)
         rows += _state_rows(result)

@@ -137,7 +137,8 @@ impl<'a> Search<'a> {
         model.compliance().require_grounded()?;
         let samples: BTreeSet<usize> =
             solution.points.iter().filter_map(|point| point.samples).collect();
-        let marched = samples.into_iter().map(|n| Ok((n, Arc::new(model.marched(n)?))));
+        let laws = settings.evaluation.marched();
+        let marched = samples.into_iter().map(|n| Ok((n, Arc::new(model.marched(n, laws)?))));
         let marched = marched.collect::<Result<_, Error>>()?;
         let (ranges, profile) = (BTreeMap::new(), Profile::default());
         Ok(Self {
