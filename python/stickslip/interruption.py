@@ -6,6 +6,7 @@ import signal
 import threading
 import time
 from collections.abc import Callable, Iterator
+from concurrent.futures import Future, wait
 from contextlib import contextmanager
 from types import FrameType, TracebackType
 from typing import Any, Self, TypeVar
@@ -111,6 +112,22 @@ class Interruption:
                 result,
             ) from None
         return result
+
+
+def beside(make: Callable[[], Kind]) -> Kind:
+    """Run compiled code in a thread beside this one, which hears Ctrl-C meanwhile."""
+    made: Future[Kind] = Future()
+
+    def work() -> None:
+        try:
+            made.set_result(make())
+        except BaseException as error:  # handed on to the caller below
+            made.set_exception(error)
+
+    threading.Thread(target=work, daemon=True).start()
+    while not wait([made], 0.2).done:
+        pass
+    return made.result()
 
 
 def stopped(what: str, count: str, result: object, advice: str = "") -> Interrupted:

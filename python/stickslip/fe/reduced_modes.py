@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from stickslip.checks import Matrix, unknown
 from stickslip.errors import ModelError
+from stickslip.model.pencil import eigen_pencil
 from stickslip.units import physical_number
 
 MASSLESS = 1e-12
@@ -33,14 +34,12 @@ def natural_modes(
     The shapes are mass-normalised. Motions of boundary degrees of freedom that move no mass are no
     modes. `springs` to ground at boundary degrees of freedom are added [N/m].
     """
-    from scipy.linalg import eigh
-
     stiffness, shift = reduction.stiffness.copy(), shift_below(reduction)
     for place, spring in springs_of(reduction, springs):
         stiffness[place, place] += spring
     try:
         # A singular mass matrix has no inverse, the shifted stiffness has one.
-        inverses, shapes = eigh(reduction.mass, stiffness - shift * reduction.mass)
+        inverses, shapes = eigen_pencil(reduction.mass, stiffness - shift * reduction.mass)
     except np.linalg.LinAlgError:
         raise ModelError(
             "springs: with them the structure is not stable; give none below 0"

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import threading
-from collections.abc import Callable
-from concurrent.futures import Future, wait
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.checks import brief
 from stickslip.errors import ModelError
+from stickslip.interruption import beside
+from stickslip.model.pencil import eigen_pencil
 
 if TYPE_CHECKING:
     from scipy.sparse import csc_array
@@ -21,8 +20,6 @@ if TYPE_CHECKING:
 _ASYMMETRY = 1e-8
 DENSE = 400
 """Rows up to which a dense eigenproblem is faster and surer than Lanczos' method."""
-
-_Made = TypeVar("_Made")
 
 
 def asymmetry(matrix: csc_array) -> float:
@@ -92,7 +89,7 @@ def _lu(matrix: csc_array) -> Any:
 
     # Pivots on the diagonal keep the symmetric order, which fills in least.
     options = {"SymmetricMode": True}
-    return _interruptible(
+    return beside(
         lambda: splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
     )
 
@@ -106,7 +103,6 @@ def lowest_modes(
     mass-normalised, the largest entry of each positive. `numpy.linalg.LinAlgError` says that K -
     shift M is not positive definite, as far as that is noticed.
     """
-    from scipy.linalg import eigh
     from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh
 
     size = stiffness.shape[0]
@@ -115,8 +111,8 @@ def lowest_modes(
     if size <= DENSE or 2 * count >= size:
         # 1 / (lambda - shift): the stiffness has an inverse, the mass of massless dofs has none.
         shifted = (stiffness - shift * mass).toarray()
-        inverses, modes = eigh(mass.toarray(), shifted, subset_by_index=(size - count, size - 1))
-        squares = shift + 1.0 / inverses
+        inverses, modes = eigen_pencil(mass.toarray(), shifted)
+        squares, modes = shift + 1.0 / inverses[-count:], modes[:, -count:]
     else:
         inverse = LinearOperator(stiffness.shape, matvec=factor.solve, dtype=np.float64)
         # A fixed start makes two runs agree to the last digit.
@@ -132,19 +128,3 @@ def lowest_modes(
     modes = modes / np.sqrt(np.einsum("ij,ij->j", modes, mass @ modes))
     largest = modes[np.abs(modes).argmax(axis=0), np.arange(count)]
     return np.asarray(squares), np.asarray(modes * np.sign(largest))
-
-
-def _interruptible(make: Callable[[], _Made]) -> _Made:
-    """Run compiled code in a thread, so that Ctrl-C is heard meanwhile."""
-    made: Future[_Made] = Future()
-
-    def work() -> None:
-        try:
-            made.set_result(make())
-        except BaseException as error:  # handed on to the caller below
-            made.set_exception(error)
-
-    threading.Thread(target=work, daemon=True).start()
-    while not wait([made], 0.2).done:
-        pass
-    return made.result()

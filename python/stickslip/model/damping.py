@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from stickslip.checks import Matrix, brief, members, set_fields
 from stickslip.errors import ModelError
 from stickslip.model.dofs import Dofs
+from stickslip.model.pencil import eigen_pencil
 from stickslip.units import physical_number
 
 _ROUNDING = 1e-13
@@ -176,8 +177,6 @@ def modes_of(stiffness: NDArray[Any], mass: NDArray[Any]) -> tuple[Matrix, NDArr
 
     There are as many as degrees of freedom with mass; those without follow statically.
     """
-    from scipy.linalg import eigh
-
     own = mass.any(axis=1)
     if not own.all():
         try:
@@ -192,7 +191,7 @@ def modes_of(stiffness: NDArray[Any], mass: NDArray[Any]) -> tuple[Matrix, NDArr
         modes[own], modes[~own] = shapes, carried @ shapes
         return squares, modes
     order = _graded(stiffness, mass)
-    squares, modes = eigh(stiffness[np.ix_(order, order)], mass[np.ix_(order, order)])
+    squares, modes = eigen_pencil(stiffness[np.ix_(order, order)], mass[np.ix_(order, order)])
     return squares, modes[np.argsort(order)]
 
 
