@@ -335,7 +335,7 @@ impl<'a> Condensed<'a> {
         load: &mut SlipLoad,
     ) {
         let law = &self.model.laws()[index];
-        let sticks = self.loss == 0.0 && law.surely_slips(motion) == Some(false);
+        let sticks = self.loss == 0.0 && law.surely_sticks(motion);
         law.slip_load(motion, tangent && !sticks, load);
     }
 

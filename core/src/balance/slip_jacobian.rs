@@ -21,6 +21,9 @@ use faer::linalg::solvers::{PartialPivLu, SolveCore as _};
 use faer::{Conj, Mat};
 use std::ops::Range;
 
+/// Numbers that are looked at together.
+const LANES: usize = 8;
+
 /// A point whose slip load depends on the motion.
 struct Yielding {
     contact: usize,
@@ -70,8 +73,7 @@ impl<'a> Loads<'a> {
         let active = (0..self.loads.len()).filter(|&contact| self.loads[contact].active);
         let all = active.flat_map(|contact| {
             self.points[contact].clone().enumerate().map(move |(local, point)| {
-                let rows = self.rows(contact, local).flatten();
-                let scale = rows.fold(0.0_f64, |most, slope| most.max(slope.abs()));
+                let scale = self.rows(contact, local).map(largest).fold(0.0, f64::max);
                 Yielding { contact, local, point, scale }
             })
         });
@@ -94,6 +96,16 @@ impl<'a> Loads<'a> {
             }
         }
     }
+}
+
+/// Largest modulus of numbers: in lanes, as it is asked of whole tangents.
+fn largest(numbers: &[f64]) -> f64 {
+    let mut most = [0.0_f64; LANES];
+    let mut rest = numbers.chunks_exact(LANES);
+    for lanes in rest.by_ref() {
+        most.iter_mut().zip(lanes).for_each(|(most, x)| *most = x.abs().max(*most));
+    }
+    rest.remainder().iter().chain(&most).fold(0.0, |most, x| x.abs().max(most))
 }
 
 impl SlipJacobian {

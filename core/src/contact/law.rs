@@ -141,6 +141,12 @@ pub trait ContactLaw: Send + Sync + std::fmt::Debug {
         None
     }
 
+    /// Whether the amplitudes of a periodic motion alone show that the contact sticks for good: no more than that,
+    /// of a law that looks at instants to see slip.
+    fn surely_sticks(&self, motion: Motion<'_>) -> bool {
+        self.surely_slips(motion) == Some(false)
+    }
+
     /// Return map of one step: takes the state through a change of the displacements and gives the
     /// force after it. All states are zero where the displacements are and nothing has slipped.
     fn return_map(

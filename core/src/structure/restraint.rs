@@ -5,8 +5,10 @@ use super::Receptance;
 use faer::linalg::solvers::Solve as _;
 use faer::{c64, Mat, MatRef};
 
-/// Contacts up to which elimination by hand is faster than a library's.
+/// Contacts up to which elimination by hand is faster than a library's, and a size at which its tables take less time
+/// to clear.
 const FEW: usize = 12;
+const FEWEST: usize = 4;
 
 /// Turns the receptance of the free structure into that of the stuck one:
 /// `G_s = (I + G D)⁻¹ G`.
@@ -28,8 +30,11 @@ pub(super) fn restrain(stiffness: MatRef<'_, f64>, out: &mut Receptance) {
     if contacts == 0 {
         return;
     }
+    if contacts <= FEWEST && !sloped {
+        return restrain_few::<FEWEST>(stiffness, out);
+    }
     if contacts <= FEW && !sloped {
-        return restrain_few(stiffness, out);
+        return restrain_few::<FEW>(stiffness, out);
     }
     let stiffness = complex(stiffness);
     let column_major = |values: &[c64]| {
@@ -55,10 +60,12 @@ pub(super) fn restrain(stiffness: MatRef<'_, f64>, out: &mut Receptance) {
     }
 }
 
-/// The same of few contacts, without derivatives, by elimination with row pivoting.
-fn restrain_few(stiffness: MatRef<'_, f64>, out: &mut Receptance) {
+/// The same of up to `MOST` contacts, without derivatives, by elimination with row pivoting.
+fn restrain_few<const MOST: usize>(stiffness: MatRef<'_, f64>, out: &mut Receptance) {
     let n = stiffness.nrows();
-    let mut coupling = [c64::new(0.0, 0.0); FEW * FEW];
+    let mut table = [[c64::new(0.0, 0.0); MOST]; MOST];
+    let mut inverses = [c64::new(0.0, 0.0); MOST];
+    let coupling = &mut table.as_flattened_mut()[..n * n];
     for j in 0..n {
         for k in 0..n {
             let d = stiffness[(k, j)];
@@ -76,13 +83,9 @@ fn restrain_few(stiffness: MatRef<'_, f64>, out: &mut Receptance) {
         let best = (pivot..n).max_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or(pivot);
         (0..n).for_each(|j| coupling.swap(j * n + pivot, j * n + best));
         let inverse = coupling[pivot * n + pivot].inv();
-        let factors: [c64; FEW] = std::array::from_fn(|i| {
-            if i > pivot && i < n {
-                coupling[pivot * n + i] * inverse
-            } else {
-                c64::new(0.0, 0.0)
-            }
-        });
+        inverses[pivot] = inverse;
+        let mut factors = [c64::new(0.0, 0.0); MOST];
+        (pivot + 1..n).for_each(|i| factors[i] = coupling[pivot * n + i] * inverse);
         let mut eliminate = |column: &mut [c64]| {
             column.swap(pivot, best);
             let own = column[pivot];
@@ -97,7 +100,7 @@ fn restrain_few(stiffness: MatRef<'_, f64>, out: &mut Receptance) {
     columns(out, &mut |column| {
         for i in (0..n).rev() {
             let known: c64 = (i + 1..n).map(|j| coupling[j * n + i] * column[j]).sum();
-            column[i] = (column[i] - known) * coupling[i * n + i].inv();
+            column[i] = (column[i] - known) * inverses[i];
         }
     });
 }

@@ -236,6 +236,10 @@ impl ContactLaw for Coulomb {
         self.surely_moves(motion)
     }
 
+    fn surely_sticks(&self, motion: Motion<'_>) -> bool {
+        self.surely_rests(motion)
+    }
+
     fn unslipped(&self, begun: &AssumedStart, displacement: &[f64]) -> Option<Unslipped> {
         self.within_cone(begun, displacement)
     }

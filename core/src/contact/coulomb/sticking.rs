@@ -14,8 +14,16 @@ impl Coulomb {
     pub(super) fn surely_moves(&self, motion: Motion<'_>) -> Option<bool> {
         match Constant::of(self, motion) {
             Some(constant) => constant.surely_slips(),
+            None if self.surely_rests(motion) => Some(false),
             None => Drive::new(self, motion, !self.is_odd()).surely_moves().then_some(true),
         }
+    }
+
+    /// See [`crate::contact::ContactLaw::surely_sticks`]: the slider of a contact in one direction under a normal
+    /// load that varies stays where it rests.
+    pub(super) fn surely_rests(&self, motion: Motion<'_>) -> bool {
+        let one = self.directions == 1 && !self.is_odd() && !motion.residual.follows_middle();
+        one && Drive::new(self, motion, true).holds(self.tangential_stiffness * self.slider()[0])
     }
 
     /// See [`crate::contact::ContactLaw::surely_unslipped`]: a series stays as near to its mean as the sum of
