@@ -73,7 +73,7 @@ impl<'a> Loads<'a> {
         let active = (0..self.loads.len()).filter(|&contact| self.loads[contact].active);
         let all = active.flat_map(|contact| {
             self.points[contact].clone().enumerate().map(move |(local, point)| {
-                let scale = self.rows(contact, local).map(largest).fold(0.0, f64::max);
+                let scale = self.rows(contact, local).map(largest).fold(0.0, larger);
                 Yielding { contact, local, point, scale }
             })
         });
@@ -98,14 +98,23 @@ impl<'a> Loads<'a> {
     }
 }
 
+/// The second number if it is larger, which it is not if it is none: a single instruction.
+fn larger(most: f64, x: f64) -> f64 {
+    if x > most {
+        x
+    } else {
+        most
+    }
+}
+
 /// Largest modulus of numbers: in lanes, as it is asked of whole tangents.
 fn largest(numbers: &[f64]) -> f64 {
     let mut most = [0.0_f64; LANES];
     let mut rest = numbers.chunks_exact(LANES);
     for lanes in rest.by_ref() {
-        most.iter_mut().zip(lanes).for_each(|(most, x)| *most = x.abs().max(*most));
+        most.iter_mut().zip(lanes).for_each(|(most, x)| *most = larger(*most, x.abs()));
     }
-    rest.remainder().iter().chain(&most).fold(0.0, |most, x| x.abs().max(most))
+    rest.remainder().iter().chain(&most).fold(0.0, |most, x| larger(most, x.abs()))
 }
 
 impl SlipJacobian {

@@ -80,25 +80,26 @@ impl ModalCompliance {
         for j in 0..self.right.ncols() {
             let (weight, slope) = self.weight(j, order * omega);
             let slope = order * slope;
-            for column in (0..contacts).filter(|_| !by_products) {
-                let left = self.contact_left[(column, j)];
-                let (value, change) = (weight * left, slope * left);
-                for row in 0..contacts {
-                    let right = self.contact_right[(row, j)];
-                    out.contact[column * contacts + row] += right * value;
-                    if let Some((contact, _)) = &mut out.slope {
-                        contact[column * contacts + row] += right * change;
-                    }
+            let [left, right] = [&self.contact_left, &self.contact_right].map(|c| c.col_as_slice(j));
+            let add = |to: &mut [c64], factor: c64| {
+                for (column, left) in to.chunks_exact_mut(contacts.max(1)).zip(left) {
+                    let value = factor * left;
+                    column.iter_mut().zip(right).for_each(|(to, right)| *to += right * value);
                 }
-                let Some(negative) = self.negative.get(j) else { continue };
-                let change = weight * weight * c64::new(0.0, -order * omega * negative) * left;
-                for row in 0..contacts {
-                    out.by_ratio[column * contacts + row] += self.contact_right[(row, j)] * change;
+            };
+            if !by_products {
+                add(&mut out.contact, weight);
+                if let Some((contact, _)) = &mut out.slope {
+                    add(contact, slope);
+                }
+                if let Some(negative) = self.negative.get(j) {
+                    let change = weight * weight * c64::new(0.0, -order * omega * negative);
+                    add(&mut out.by_ratio, change);
                 }
             }
             let Some(load) = load else { continue };
             for row in 0..contacts {
-                let response = self.contact_right[(row, j)] * load[j];
+                let response = right[row] * load[j];
                 out.stuck[row] += response * weight;
                 if let Some((_, stuck)) = &mut out.slope {
                     stuck[row] += response * slope;
@@ -180,8 +181,8 @@ impl Compliance for ModalCompliance {
         let (order, load) = (harmonic as f64, self.load(harmonic).filter(|_| loaded));
         let coordinate = |j: usize| {
             let mut excitation = load.map_or(c64::new(0.0, 0.0), |load| load[j]);
-            for (i, force) in forces.iter().enumerate() {
-                excitation += self.contact_left[(i, j)] * force;
+            for (left, force) in self.contact_left.col_as_slice(j).iter().zip(&forces) {
+                excitation += left * force;
             }
             let (weight, slope) = self.weight(j, order * omega);
             let weight = if sloped { order * slope } else { weight };
@@ -196,7 +197,7 @@ impl Compliance for ModalCompliance {
             return Ok(());
         }
         for j in 0..modes {
-            let (shape, coordinate) = (self.right.col(j), coordinate(j));
+            let (shape, coordinate) = (self.right.col_as_slice(j), coordinate(j));
             for (x, &dof) in out.iter_mut().zip(observe) {
                 *x += shape[dof] * coordinate;
             }

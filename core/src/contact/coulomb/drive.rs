@@ -15,12 +15,21 @@ const ROUNDING: f64 = 1e-12;
 /// price of a cycle.
 const INSTANTS: usize = 16;
 
+/// Way of the pull in a plane over the largest limit that nothing needs more of. The slip load K − t is a number of
+/// the size of K, so that rounding hides what lies below that size over 1e16 in it. A contact that moves r times as
+/// far as it slips at, r above R, has the traction of a spring R/r times as stiff but for about M/R, that is
+/// K/(r R): with this R less than rounding. The slip equation, which has the time scale M/K', is that much less
+/// stiff.
+const FARTHEST: f64 = 1e8;
+
 /// Pull and normal force of a periodic motion.
 pub(super) struct Drive<'a> {
     pub(super) table: &'a SampleTable,
     /// Number of tangential directions.
     pub(super) directions: usize,
     pub(super) friction: f64,
+    /// k_t, or a lower stiffness whose traction is the same to rounding.
+    pub(super) stiffness: f64,
     /// Series of K, direction after direction.
     pub(super) pull: Vec<f64>,
     /// Series of `N₀ + k_n v`, its mean included; nothing if it is constant.
@@ -63,11 +72,13 @@ impl<'a> Drive<'a> {
             series[0] += law.normal_at_rest();
             Pressing { series, slopes: OnceCell::new() }
         });
+        let stiffness = enough(law, harmonics, tangential, pressing.as_ref());
         Self {
             table: motion.table,
             directions: law.directions,
             friction: law.friction,
-            pull: tangential.iter().map(|u| law.tangential_stiffness * u).collect(),
+            stiffness,
+            pull: tangential.iter().map(|u| stiffness * u).collect(),
             pressing,
             at_rest: law.normal_at_rest(),
             slopes: OnceCell::new(),
@@ -79,15 +90,15 @@ impl<'a> Drive<'a> {
         self.slopes.get_or_init(|| self.table.slopes(self.pull(0)))
     }
 
-    /// Whether amplitudes alone show that the limit never reaches a slider that rests there, of a
-    /// contact in one direction.
+    /// Whether amplitudes alone show that the contact is closed and the limit never reaches a slider that rests
+    /// there, of a contact in one direction.
     pub(super) fn holds(&self, slider: f64) -> bool {
         let least = self.pressing.as_ref().map_or(self.at_rest, |pressing| {
             let series = &pressing.series;
             series[0] - swing(series)
         });
         let farthest = (self.pull[0] - slider).abs() + swing(&self.pull);
-        self.harmonics().has_mean() && farthest <= self.friction * least
+        self.harmonics().has_mean() && least >= 0.0 && farthest <= self.friction * least
     }
 
     pub(super) fn harmonics(&self) -> &'a Harmonics {
@@ -240,6 +251,30 @@ impl<'a> Drive<'a> {
             }
         }
         theta
+    }
+}
+
+/// The stiffness of a contact in a plane, or as much of it as makes it move [`FARTHEST`].
+fn enough(
+    law: &Coulomb,
+    harmonics: &Harmonics,
+    tangential: &[f64],
+    pressing: Option<&Pressing>,
+) -> f64 {
+    let stiffness = law.tangential_stiffness;
+    if law.directions == 1 {
+        return stiffness;
+    }
+    let ways = tangential.chunks_exact(harmonics.slots());
+    let way: f64 = ways.flat_map(|way| &way[harmonics.offset()..]).map(|u| u.abs()).sum();
+    let pressed = pressing.map_or(law.normal_at_rest(), |pressing| {
+        pressing.series.iter().map(|n| n.abs()).sum()
+    });
+    let most = FARTHEST * law.friction * pressed;
+    if most > 0.0 && stiffness * way > most {
+        most / way
+    } else {
+        stiffness
     }
 }
 

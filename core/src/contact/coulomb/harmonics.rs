@@ -39,7 +39,7 @@ impl Coulomb {
         }
         let (count, size) = (self.displacements(), motion.displacement.len());
         let drive = Drive::new(self, motion, false);
-        let rest = self.slider().map(|w| self.tangential_stiffness * w);
+        let rest = self.slider().map(|w| drive.stiffness * w);
         let mut rate = vec![0.0; count * size];
         let slider = if !motion.residual.follows_middle() {
             rest
@@ -61,7 +61,7 @@ impl Coulomb {
             motion.residual.slider(middle, rest)
         };
         let mut displacement: Vec<f64> =
-            slider[..self.directions].iter().map(|s| s / self.tangential_stiffness).collect();
+            slider[..self.directions].iter().map(|s| s / drive.stiffness).collect();
         if count > self.directions {
             let normal = size - slots;
             harmonics.basis(0.0, &mut rate[self.directions * size + normal..][..slots]);
@@ -84,7 +84,7 @@ impl Coulomb {
         if !cycle.stretches.iter().all(stuck) {
             return held;
         }
-        let (k, rest) = (self.tangential_stiffness, self.slider());
+        let (k, rest) = (drive.stiffness, self.slider());
         let reach = self.friction * drive.at_rest.abs().max(drive.at(0.0).1[0].abs()) / k;
         for (i, held) in held.iter_mut().enumerate().take(self.directions) {
             let [low, high] = match self.directions {
@@ -117,7 +117,7 @@ impl Coulomb {
             for (row, rate) in rows {
                 let (pull, limit) = row.split_at_mut(tangential);
                 let (by_pull, by_limit) = rate.split_at(tangential);
-                pull.iter_mut().zip(by_pull).for_each(|(t, r)| *t = self.tangential_stiffness * r);
+                pull.iter_mut().zip(by_pull).for_each(|(t, r)| *t = drive.stiffness * r);
                 if varies {
                     let slope = self.friction * normal;
                     limit.iter_mut().zip(by_limit).for_each(|(t, r)| *t = slope * r);
@@ -157,7 +157,10 @@ impl Coulomb {
                 let series = drive.pressing.as_ref().map(|pressing| pressing.series.clone());
                 by.limit = series.unwrap_or_else(|| vec![drive.at_rest]);
             }
-            1 => by.pull.copy_from_slice(tangential),
+            1 => {
+                let share = drive.stiffness / self.tangential_stiffness;
+                by.pull.iter_mut().zip(tangential).for_each(|(by, u)| *by = share * u);
+            }
             2 => match self.closure {
                 Closure::Preload(_) => (by.pressing[0], by.balanced) = (1.0, 1.0),
                 Closure::Gap(_) => by.pressing[0] = -stiffness,
@@ -192,6 +195,18 @@ impl Coulomb {
     }
 }
 
+/// Adds the force of a spring at the first coefficients of a motion.
+fn add_spring(stiffness: f64, motion: Motion<'_>, count: usize, out: &mut SlipLoad) {
+    let size = out.value.len();
+    for (i, u) in motion.displacement[..count].iter().enumerate() {
+        out.value[i] += stiffness * u;
+        if !out.tangent.is_empty() {
+            out.tangent[i * size + i] += stiffness;
+        }
+    }
+    out.active = true;
+}
+
 /// How what drives a contact changes with a parameter.
 struct Variation {
     pull: Vec<f64>,
@@ -219,6 +234,10 @@ impl HarmonicForce for Coulomb {
         let drive = Drive::new(self, motion, self.varies());
         let cycle = self.cycle(&drive, motion, tangent);
         self.write(&drive, &cycle.response(&drive, tangent), out);
+        let left = self.tangential_stiffness - drive.stiffness;
+        if left > 0.0 {
+            add_spring(left, motion, drive.pull.len(), out);
+        }
     }
 
     fn summary(&self, motion: Motion<'_>, out: &mut [PointSummary]) {
@@ -229,7 +248,7 @@ impl HarmonicForce for Coulomb {
         let drive = Drive::new(self, motion, self.varies());
         let cycle = self.cycle(&drive, motion, false);
         let (tangential, normal) = out.split_at_mut(self.directions);
-        let open = cycle.summary(&drive, self.tangential_stiffness, tangential);
+        let open = cycle.summary(&drive, drive.stiffness, tangential);
         normal.fill(open);
     }
 

@@ -246,7 +246,7 @@ impl Period<'_> {
         if self.drive.harmonics().half_wave() {
             return ([0.0; 2], Vec::new());
         }
-        let rest = self.law.slider().map(|w| self.law.tangential_stiffness * w);
+        let rest = self.law.slider().map(|w| self.drive.stiffness * w);
         if !self.residual.follows_middle() {
             return (rest, Vec::new());
         }
