@@ -18,6 +18,8 @@ use std::sync::Arc;
 
 /// Steps between two questions whether to end.
 const LOOK: usize = 32;
+/// Steps that tell how long the others are: what makes a few of them short, as contact that closes, is passed by then.
+const TELLING: usize = 1 << 14;
 /// Changes of state at one instant after which the states are contradictory.
 const CHANGES: usize = 8;
 /// Way of a contact without sliders, relative to its displacement, at which rounding makes it turn.
@@ -47,6 +49,8 @@ pub struct Flow<'a> {
     granted: usize,
     /// What other work has cost, in steps.
     charged: usize,
+    /// Whether its steps were found to be too short to come to an end.
+    crawls: bool,
     /// Steps taken since the start.
     pub steps: usize,
     /// Events met since the start.
@@ -67,6 +71,7 @@ impl<'a> Flow<'a> {
             interrupted: None,
             granted: usize::MAX,
             charged: 0,
+            crawls: false,
             steps: 0,
             events: 0,
         }
@@ -89,6 +94,7 @@ impl<'a> Flow<'a> {
     /// As [`Flow::granted`].
     pub(crate) fn grant(&mut self, steps: usize) {
         self.granted = steps;
+        self.crawls = false;
     }
 
     /// Takes off the steps that are granted what other work costs.
@@ -101,10 +107,17 @@ impl<'a> Flow<'a> {
         self.steps + self.charged
     }
 
-    /// Whether all steps that were granted are taken.
+    /// Whether all steps that were granted are taken, or would be without coming to an end.
     #[must_use]
     pub fn is_spent(&self) -> bool {
-        self.taken() >= self.granted
+        self.crawls || self.taken() >= self.granted
+    }
+
+    /// Whether the steps from a time on, so many as tell, would not come to another time within those that are left,
+    /// and back again: an orbit is followed once to be found, and once to be read.
+    fn is_slow(&self, since: f64, [now, until]: [f64; 2]) -> bool {
+        let wanted = 2.0 * TELLING as f64 * (until - now) / (now - since);
+        self.granted < usize::MAX && wanted > self.granted.saturating_sub(self.taken()) as f64
     }
 
     /// Moves a state on to the time `until` \[s\].
@@ -120,9 +133,14 @@ impl<'a> Flow<'a> {
     ) -> Result<(), Halt> {
         let mut regime = Arc::new(ContactState::new(self.system, &state.points));
         let (mut changes, most) = (0, CHANGES * self.system.points());
+        let mut mark = (self.steps, state.time);
         while state.time < until {
             if !state.is_bounded() {
                 return Err(Halt::Unbounded);
+            }
+            if self.steps - mark.0 >= TELLING {
+                self.crawls |= self.is_slow(mark.1, [state.time, until]);
+                mark = (self.steps, state.time);
             }
             if self.is_spent() {
                 return Err(Halt::Steps);
