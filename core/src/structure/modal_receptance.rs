@@ -80,7 +80,8 @@ impl ModalCompliance {
         for j in 0..self.right.ncols() {
             let (weight, slope) = self.weight(j, order * omega);
             let slope = order * slope;
-            let [left, right] = [&self.contact_left, &self.contact_right].map(|c| c.col_as_slice(j));
+            let [left, right] =
+                [&self.contact_left, &self.contact_right].map(|c| c.col_as_slice(j));
             let add = |to: &mut [c64], factor: c64| {
                 for (column, left) in to.chunks_exact_mut(contacts.max(1)).zip(left) {
                     let value = factor * left;

@@ -267,9 +267,8 @@ fn enough(
     }
     let ways = tangential.chunks_exact(harmonics.slots());
     let way: f64 = ways.flat_map(|way| &way[harmonics.offset()..]).map(|u| u.abs()).sum();
-    let pressed = pressing.map_or(law.normal_at_rest(), |pressing| {
-        pressing.series.iter().map(|n| n.abs()).sum()
-    });
+    let pressed = pressing
+        .map_or(law.normal_at_rest(), |pressing| pressing.series.iter().map(|n| n.abs()).sum());
     let most = FARTHEST * law.friction * pressed;
     if most > 0.0 && stiffness * way > most {
         most / way
