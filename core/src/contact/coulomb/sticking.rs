@@ -154,4 +154,31 @@ mod tests {
         }
         assert!(sure > 150 && missed < sure, "{sure} {missed}");
     }
+
+    /// What amplitudes say of rest is so, whatever presses, and they say it of every small motion.
+    #[test]
+    fn what_surely_rests_has_no_tangent() {
+        let table = SampleTable::new(Harmonics::new(5, false));
+        let slots = table.harmonics().slots();
+        let mut sure = [0, 0];
+        for case in 0..400 {
+            let closure = if case % 3 == 0 { Closure::Gap(-0.1) } else { Closure::Preload(20.0) };
+            let law = Coulomb::new(1, 0.4, 150.0, Some(200.0), closure).unwrap();
+            let size = 0.01 * (1.0 + (case % 20) as f64);
+            let displacement: Vec<f64> = (0..2 * slots)
+                .map(|i| size * random(case * 89 + i) / (1.0 + (i % slots) as f64))
+                .collect();
+            let at = |residual| Motion { table: &table, displacement: &displacement, residual };
+            assert!(!law.surely_sticks(at(Residual::Centred)), "its slider follows the motion");
+            let motion = at(Residual::FromRest);
+            let mut load = SlipLoad::default();
+            law.slip_load(motion, true, &mut load);
+            let rests = law.surely_sticks(motion);
+            assert!(!(rests && load.active), "{case}: it slips");
+            assert_eq!(law.surely_slips(motion) == Some(false), rests, "{case}");
+            sure[usize::from(rests)] += 1;
+            assert!(rests || size > 0.015, "{case}: so little");
+        }
+        assert!(sure.iter().all(|count| *count > 20), "{sure:?}");
+    }
 }
