@@ -228,7 +228,7 @@ impl Walk<'_, '_> {
             let Some(mut point) = self.solved(curve, &z, resolution, iterations)? else {
                 return Ok(Change::Ends(CurveEnd::Interrupted));
             };
-            let kept = self.climb(&mut point, resolution)?;
+            let kept = self.climb(curve, &mut point, resolution)?;
             if end.is_none() && kept == resolution {
                 let tolerance = self.balance.settings.tolerance;
                 let error = self.line_error(&point, length).unwrap_or(0.81 * tolerance);

@@ -10,8 +10,14 @@ use crate::Error;
 
 impl Walk<'_, '_> {
     /// Has a point of the curve be one of as much resolution as it lacks, and tells that.
-    pub(super) fn climb(&mut self, point: &mut Point, at: Resolution) -> Result<Resolution, Error> {
+    pub(super) fn climb(
+        &mut self,
+        curve: &mut ForcedCurve<'_>,
+        point: &mut Point,
+        at: Resolution,
+    ) -> Result<Resolution, Error> {
         let mut kept = at;
+        self.judge_beside(curve, point, at)?;
         while let Some(more) = self.wanted(point, kept) {
             kept = more;
             let Some(finer) = self.finer(point, kept)? else {
@@ -61,9 +67,12 @@ impl Walk<'_, '_> {
         let found = found.filter(inside);
         let found = found.or_else(|| Some(between(&mut curve, &before, &at, point.omega)?.0));
         let Some(z) = found else { return Ok(None) };
-        let solved = self.solved(&mut curve, &z, resolution, point.iterations);
+        let mut solved = self.solved(&mut curve, &z, resolution, point.iterations)?;
+        if let Some(finer) = &mut solved {
+            self.judge_beside(&mut curve, finer, resolution)?;
+        }
         self.balance.add_profile(&curve.profile);
-        solved
+        Ok(solved)
     }
 }
 
@@ -74,7 +83,8 @@ mod tests {
     use crate::balance::settings::{Resolution, Settings};
     use crate::balance::solution::PointStatus;
     use crate::balance::sweep::branch::Walk;
-    use crate::contact::{Cubic, Jenkins};
+    use crate::balance::sweep::forced_curve::ForcedCurve;
+    use crate::contact::{Cubic, Jenkins, Residual};
     use crate::model::{Contact, Model};
     use crate::structure::{HarmonicLoad, Structure};
     use faer::{c64, mat, Mat};
@@ -110,7 +120,11 @@ mod tests {
             let mut point = balance.solve_with(few, omega, None).unwrap();
             assert!(point.is_solved() && last.is_solved());
             let mut walk = Walk::at_end(&mut balance, vec![Arc::new(last)], (omega, omega));
-            walk.climb(&mut point, few).unwrap();
+            let ask = || false;
+            let table = walk.balance.table(few.harmonics);
+            let given = walk.balance.evaluated(None).unwrap();
+            let mut curve = ForcedCurve::new(given, &table, Residual::Centred, &ask);
+            walk.climb(&mut curve, &mut point, few).unwrap();
             let status = if found { PointStatus::Converged } else { PointStatus::EffortLimit };
             assert_eq!((point.status, point.omega), (status, omega));
             assert_eq!(point.harmonics > 3, found);

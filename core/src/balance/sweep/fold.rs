@@ -93,35 +93,49 @@ impl Walk<'_, '_> {
         fold.fold = true;
         // At a corner the planes across the ways to it and from it may meet the curve where that between fails.
         let way = |from: &[f64], to: &[f64]| to.iter().zip(from).map(|(b, a)| b - a).collect();
-        let ways: [Vec<f64>; 3] = [way(before, after), way(before, z), way(z, after)];
+        let ways = [way(before, after), way(before, z), way(z, after)];
+        let whole = self.judge_across(curve, z, &mut fold, &ways, resolution)?;
+        Ok(whole.then_some(fold))
+    }
+
+    /// Writes the errors of a point of the curve by its distance, on the plane across one of some ways, to the
+    /// curves of more samples and of more harmonics; `false` if the analysis is to end.
+    pub(super) fn judge_across(
+        &mut self,
+        curve: &ForcedCurve<'_>,
+        z: &[f64],
+        point: &mut Point,
+        ways: &[Vec<f64>],
+        resolution: Resolution,
+    ) -> Result<bool, Error> {
         let observe = self.balance.observe;
-        let slipping = self.balance.nonlinear_points(&fold);
+        let slipping = self.balance.nonlinear_points(point);
         if observe.is_empty() || slipping == 0 {
-            return Ok(Some(fold));
+            return Ok(true);
         }
         if let Some(samples) = resolution.samples {
             let finer = Resolution { samples: Some(finer_than(samples)), ..resolution };
-            let change = self.change_to(&fold, &ways, finer)?;
-            fold.sampling_error = change.iter().map(|error| CAUTION * error).collect();
+            let change = self.change_to(point, ways, finer)?;
+            point.sampling_error = change.iter().map(|error| CAUTION * error).collect();
         }
         let harmonics = curve.series(z).harmonics;
         let given = self.balance.evaluated(None)?;
         let effort = Effort::new(&given, harmonics.half_wave(), slipping, observe.len());
-        let extension = Extension::new(&effort, &harmonics, fold.omega, f64::INFINITY);
+        let extension = Extension::new(&effort, &harmonics, point.omega, f64::INFINITY);
         let climb = self.balance.control.samples_climb();
         let resolved = self.balance.evaluated(resolution.samples)?.resolves();
         let extension = extension.within(if climb { usize::MAX } else { resolved });
         let least = if climb { (8 * (extension.highest + 1)).next_power_of_two() } else { 0 };
         let samples = resolution.samples.map(|samples| samples.max(least));
         let more = Resolution { harmonics: extension.highest, samples };
-        let change = self.change_to(&fold, &ways, more)?;
+        let change = self.change_to(point, ways, more)?;
         let unseen = extension.unseen * self.balance.unseen_of_massless(&harmonics, &extension);
-        let errors = change.iter().zip(&fold.sampling_error);
-        fold.error_estimate = errors.map(|(error, own)| unseen * error + own).collect();
-        Ok((!self.balance.is_ended()).then_some(fold))
+        let errors = change.iter().zip(&point.sampling_error);
+        point.error_estimate = errors.map(|(error, own)| unseen * error + own).collect();
+        Ok(!self.balance.is_ended())
     }
 
-    /// How far the curve of another resolution is from a fold on the plane across a way: sum over all harmonics
+    /// How far the curve of another resolution is from a point on the plane across a way: sum over all harmonics
     /// of the change of each observed DOF, and its share in the frequency as a share of its size.
     fn change_to(
         &mut self,

@@ -1,6 +1,7 @@
 //! Curves over the frequency: given points, ranges with adaptive steps, branches that fold.
 
 mod adaptive;
+mod beside;
 mod branch;
 mod branches;
 mod continuity;
