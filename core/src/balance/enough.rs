@@ -1,5 +1,6 @@
 //! A point of the forced response with as many harmonics and samples as the tolerance asks for.
 
+use super::accuracy::PAST_LAST_MODE;
 use super::forced::ForcedBalance;
 use super::resolution_control::Decision;
 use super::scale::OF_HARMONICS;
@@ -139,6 +140,15 @@ impl ForcedBalance<'_> {
         self.control.lacking(point.resolution(), error).is_some()
     }
 
+    /// Order beyond which no mode takes part; there is none where degrees of freedom without mass follow all of them.
+    pub(super) fn order_of_modes(&self, omega: f64) -> f64 {
+        if self.model.structure().massless().is_empty() {
+            PAST_LAST_MODE * self.model.compliance().highest_frequency() / omega
+        } else {
+            f64::INFINITY
+        }
+    }
+
     /// What the errors of a solution ask for.
     pub(super) fn judge(&mut self, point: &Point) -> Decision {
         self.scale.include(point);
@@ -149,6 +159,7 @@ impl ForcedBalance<'_> {
         let errors = point.error_estimate.iter().zip(&point.sampling_error);
         let counted = |(all, sampling): (&f64, &f64)| if climb { *all } else { all - sampling };
         let error = scale.relative(point, OF_HARMONICS, errors.map(counted));
-        self.control.judge(point.resolution(), error, of_samples)
+        let modes = self.order_of_modes(point.omega);
+        self.control.judge(point.resolution(), [error, of_samples], modes)
     }
 }

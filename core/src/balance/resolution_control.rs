@@ -18,6 +18,13 @@ const LOWEST_ORDER: usize = 3;
 const FIRST_RUNG: usize = 3;
 /// An estimate this far below the tolerance lets the next point try one level less.
 const GENEROUS: f64 = 0.05;
+/// Beyond all modes friction forces with kinks leave displacements whose harmonics fall with the fourth power of their
+/// order, and an error that falls with the third: the next point tries one level less where that leaves this share
+/// of the tolerance, …
+const FORESEEN: (i32, f64) = (3, 0.6);
+/// … from this level on. Below it a level costs next to nothing, and curves around sharp folds are followed more
+/// safely with one more.
+const DEAR: usize = 39;
 /// Share of the tolerance that the sampling error may take: it leaves most to the discarded
 /// harmonics, which cost more, for twice the samples that the whole tolerance would ask for.
 const OF_SAMPLES: f64 = 0.25;
@@ -93,8 +100,14 @@ impl ResolutionControl {
     }
 
     /// Judges a solution by its errors relative to its amplitudes: that of all that is chosen
-    /// automatically, and the part of it that more samples would take away.
-    pub(super) fn judge(&mut self, at: Resolution, error: f64, of_samples: f64) -> Decision {
+    /// automatically, and the part of it that more samples would take away. Beyond the order `modes` no mode takes
+    /// part.
+    pub(super) fn judge(
+        &mut self,
+        at: Resolution,
+        [error, of_samples]: [f64; 2],
+        modes: f64,
+    ) -> Decision {
         let tolerance = self.settings.tolerance;
         let target = OF_SAMPLES * tolerance;
         let mut decision = Decision::Enough;
@@ -123,9 +136,19 @@ impl ResolutionControl {
             };
             return Decision::More(self.allowed(more, at.samples));
         }
-        let generous = left <= GENEROUS * tolerance;
+        let generous = left <= GENEROUS * tolerance || self.has_fallen(order, left, modes);
         self.level.order = (order - usize::from(generous && order > 0)).max(self.lowest);
         decision
+    }
+
+    /// Whether a level less than one that leaves an error would do, by how errors fall beyond all modes.
+    fn has_fallen(&self, order: usize, left: f64, modes: f64) -> bool {
+        let Some(less) = order.checked_sub(1).map(|less| self.orders[less] as f64) else {
+            return false;
+        };
+        let (power, share) = FORESEEN;
+        let grown = (self.orders[order] as f64 / less).powi(power);
+        less >= modes.max(DEAR as f64) && left * grown <= share * self.settings.tolerance
     }
 
     /// The samples that a solution lacks by their error alone, if they may be had.
@@ -194,4 +217,34 @@ fn finer(samples: Option<usize>, excess: f64) -> Option<usize> {
     // A coarse march misjudges its error: no more than three levels at once.
     let levels = (0.5 * excess.log2()).round().clamp(1.0, 3.0) as u32;
     samples.map(|samples| samples.next_power_of_two() << levels)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The level with which the next point begins after one that leaves an error.
+    fn next(order: usize, error: f64, modes: f64) -> usize {
+        let mut control = ResolutionControl::new(Settings::default(), &[1]);
+        let at = Resolution { harmonics: order, samples: None };
+        assert_eq!(control.judge(at, [error, 0.0], modes), Decision::Enough);
+        control.first().harmonics
+    }
+
+    /// An error of a tenth of the tolerance, as a few points beside a sharp bend leave behind, held all points
+    /// after them at a level that costs three times the one below.
+    #[test]
+    fn dear_levels_are_left_as_soon_as_the_one_below_would_do() {
+        let tolerance = Settings::default().tolerance;
+        for (order, below) in [(57, 39), (83, 57), (121, 83), (177, 121)] {
+            assert_eq!(next(order, 0.1 * tolerance, 9.0), below);
+            // That one would leave more than the tolerance.
+            assert_eq!(next(order, 0.4 * tolerance, 9.0), order);
+            // Errors do not fall before all modes are passed.
+            assert_eq!(next(order, 0.1 * tolerance, below as f64 + 1.0), order);
+        }
+        // Cheap levels are left where next to nothing is.
+        assert_eq!(next(27, 0.1 * tolerance, 3.0), 27);
+        assert_eq!(next(27, 0.01 * tolerance, 3.0), 19);
+    }
 }
