@@ -22,7 +22,7 @@ pub(super) struct LoadCurve<'b, 'a> {
 }
 
 /// The motions at the load as it is that the curve through one of them comes by, in both directions, as far
-/// as so many evaluations lead.
+/// as so many evaluations, and the work that is granted, lead.
 pub(super) fn joined_by_load(
     equations: &mut Condensed<'_>,
     motion: &[f64],
@@ -48,7 +48,8 @@ pub(super) fn joined_by_load(
                 }));
                 curve.accept(&walk.point);
             }
-            let dear = curve.equations.profile.evaluations > affordable;
+            let dear =
+                curve.equations.profile.evaluations > affordable || curve.equations.is_spent();
             if dear || !(FACTORS[0]..FACTORS[1]).contains(&to) {
                 break;
             }
