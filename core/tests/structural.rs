@@ -5,7 +5,8 @@
 mod common;
 
 use common::damper::{stiffness, Random, LIMITS};
-use faer::{mat, Mat};
+use faer::{c64, mat, Mat};
+use std::f64::consts::TAU;
 use stickslip_core::contact::{
     Aft, ContactLaw, HarmonicForce, Jenkins, Motion, PointState, PointSummary, Residual,
     SlipElement, SlipLoad, StructuralDamper,
@@ -76,6 +77,44 @@ fn tangents_of_random_dampers_match_differences() {
         assert!(best < 1e-5, "case {case}, {points} points: {best:e}, {law:?}, {u:?}");
     }
     assert!(slipped > 60, "{slipped}");
+}
+
+/// The cells in which transitions are looked for are no part of the law: their number grows with the
+/// harmonics, and one that nothing moves in must not change the forces. Two points of small limits that
+/// move against each other turn, stick and slip again within one cell.
+#[test]
+fn forces_of_points_that_turn_together_do_not_depend_on_the_grid() {
+    let stiffness = mat![[1.2, -0.5], [-0.5, 1.0]];
+    let mut random = Random(3);
+    let mut slipped = 0;
+    for case in 0..400 {
+        let reach = 10f64.powf(random.between(-6.0, -3.0));
+        let limits = [reach * random.between(0.1, 1.0), reach * random.between(0.5, 4.0)];
+        let law = StructuralDamper::new(stiffness.as_ref(), &limits).unwrap();
+        let phase = random.between(0.0, TAU);
+        let later = phase + reach.sqrt() * random.between(-0.5, 0.5);
+        let amplitudes = [c64::from_polar(1.4, phase), c64::from_polar(-1.0, later)];
+        let mut fundamental = |highest: usize| -> Vec<f64> {
+            let table = SampleTable::new(Harmonics::new(highest, true));
+            let slots = table.harmonics().slots();
+            let mut u = vec![0.0; 2 * slots];
+            for (amplitude, series) in amplitudes.iter().zip(u.chunks_exact_mut(slots)) {
+                let mut orders = vec![c64::new(0.0, 0.0); highest + 1];
+                orders[1] = *amplitude;
+                table.harmonics().write_series(&orders, series);
+            }
+            let load = load(&law, &table, &u);
+            slipped += usize::from(load.active);
+            load.value.chunks_exact(slots).flat_map(|series| series[..2].to_vec()).collect()
+        };
+        let loads: Vec<Vec<f64>> = [1, 3, 5, 7, 9, 13].map(&mut fundamental).to_vec();
+        for other in &loads[1..] {
+            let jump = difference(&loads[0], other) / largest(&limits);
+            // Rounding of the loads, which are as large as the elastic forces.
+            assert!(jump < 1e-13 / reach + 1e-9, "case {case}: {jump:e} of the limits {limits:?}");
+        }
+    }
+    assert!(slipped > 1000, "{slipped}");
 }
 
 #[test]

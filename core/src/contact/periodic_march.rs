@@ -23,8 +23,13 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// Change over a round of half a period, relative to the one before, that shows a slip which
 /// nothing undoes: mirrored it alternates, and the symmetric motion is the mean of both.
 pub(super) const SLOW: f64 = 0.9;
-/// Distance from its limit at which a point is at it, relative to the limit.
+/// Distance from its limit at which a point is at it, relative to the limit, …
 pub(super) const AT_LIMIT: f64 = 1e-12;
+/// … at most, where small limits are beside the rounding of elastic forces.
+const NEAR_LIMIT: f64 = 1e-3;
+/// Share of the way to the end of a cell by which a point is left alone behind a touch that changes
+/// nothing, at first and at most; each further touch in the cell doubles it.
+const APART: [f64; 2] = [1e-3, 0.5];
 
 /// A stretch of the period in one state.
 #[derive(Debug, Clone)]
@@ -60,6 +65,8 @@ pub(super) struct March<'a> {
     series: &'a [f64],
     /// Displacements at the ends of the cells of a grid.
     grid: Vec<Jet>,
+    /// Distance from its limit at which each point is at it.
+    pub(super) at_limit: Vec<f64>,
     pub(super) sets: Vec<ActiveSet>,
     pub(super) here: Stretch,
     done: Vec<Stretch>,
@@ -74,7 +81,7 @@ impl PeriodicMarch {
         let mut march = March::new(law, motion, derivative);
         let sign = if motion.table.harmonics().half_wave() { -1.0 } else { 1.0 };
         let (mut resolved, mut last_change) = (true, f64::INFINITY);
-        let elastic = march.elastic_forces();
+        let elastic = march.elastic_forces().into_iter().fold(0.0, f64::max);
         for round in 0..MOST_ROUNDS {
             let start = march.jet(0.0);
             let before = march.force_at(&start);
@@ -125,6 +132,7 @@ impl<'a> March<'a> {
             harmonics,
             series,
             grid: Jet::grid(motion),
+            at_limit: Vec::new(),
             sets,
             here,
             done,
@@ -132,6 +140,12 @@ impl<'a> March<'a> {
             slipped: false,
             transitions: 0,
         };
+        // A force is the difference of elastic forces, which may be many times as large.
+        let distance = |(elastic, limit): (f64, &f64)| {
+            (ROUNDING * elastic).max(AT_LIMIT * limit).min(NEAR_LIMIT * limit)
+        };
+        let elastic = march.elastic_forces().into_iter();
+        march.at_limit = elastic.zip(&law.limits).map(distance).collect();
         march.begin();
         march
     }
@@ -162,15 +176,24 @@ impl<'a> March<'a> {
         let most = 8 * self.law.limits.len() * (grid.len() + 8);
         let mut from = Cow::Owned(self.jet(self.here.start));
         for to in grid {
-            while let Some((theta, point)) = self.next_transition(&from, to) {
+            let [mut apart, most_apart] = APART;
+            // The point that has just touched without a change, and the angle up to which it is left alone.
+            let mut touched: Option<(usize, Jet)> = None;
+            loop {
+                let left_alone = touched.take();
+                let (until, alone) =
+                    left_alone.as_ref().map_or((to, None), |(i, end)| (end, Some(*i)));
+                let Some((theta, point)) = self.next_transition(&from, until, alone) else {
+                    let Some((_, end)) = left_alone else { break };
+                    from = Cow::Owned(end);
+                    continue;
+                };
                 from = Cow::Owned(self.jet(theta));
-                let before = (self.here.set, self.here.states.clone());
-                let force = self.force_at(&from);
-                let gradient = (self.derivative != Derivative::None).then(|| self.gradient(theta));
-                self.settle(&from, force, gradient, Some(point));
-                if (self.here.set, &self.here.states) == (before.0, &before.1) {
-                    // A touch that changes nothing: go on beyond it.
-                    from = Cow::Owned(self.jet(0.5 * (theta + to.theta)));
+                if !self.arrive(&from, point) {
+                    // The others may change their states right behind a touch that changes nothing.
+                    let end = self.jet(theta + apart * (to.theta - theta));
+                    apart = (2.0 * apart).min(most_apart);
+                    touched = Some((point, end));
                 }
                 self.transitions += 1;
                 if self.transitions > most {
@@ -180,6 +203,15 @@ impl<'a> March<'a> {
             from = Cow::Borrowed(to);
         }
         true
+    }
+
+    /// Lets a point arrive at the end of its state; whether any state changes.
+    fn arrive(&mut self, jet: &Jet, point: usize) -> bool {
+        let before = (self.here.set, self.here.states.clone());
+        let force = self.force_at(jet);
+        let gradient = (self.derivative != Derivative::None).then(|| self.gradient(jet.theta));
+        self.settle(jet, force, gradient, Some(point));
+        (self.here.set, &self.here.states) != (before.0, &before.1)
     }
 
     /// Begins the next round where this one has ended.
@@ -192,8 +224,8 @@ impl<'a> March<'a> {
         }
     }
 
-    /// Bound of the elastic forces without any slip.
-    fn elastic_forces(&self) -> f64 {
+    /// Bounds of the elastic forces on the points without any slip.
+    fn elastic_forces(&self) -> Vec<f64> {
         let mut far = vec![0.0_f64; self.law.limits.len()];
         for jet in &self.grid {
             far.iter_mut().zip(jet.value()).for_each(|(far, u)| *far = far.max(u.abs()));
@@ -201,7 +233,7 @@ impl<'a> March<'a> {
         let row = |i: usize| -> f64 {
             far.iter().enumerate().map(|(j, u)| self.law.stiffness[(i, j)].abs() * u).sum()
         };
-        (0..far.len()).map(row).fold(0.0, f64::max)
+        (0..far.len()).map(row).collect()
     }
 
     /// Begins the round from the mean of its forces and those of the round before.
@@ -286,7 +318,7 @@ impl<'a> March<'a> {
         let columns = gradient.as_ref().map_or(0, Vec::len) / points;
         let before = (self.here.set, self.here.states.clone());
         for (i, (force, limit)) in force.iter_mut().zip(&self.law.limits).enumerate() {
-            let at_limit = arrived == Some(i) || force.abs() >= limit * (1.0 - AT_LIMIT);
+            let at_limit = arrived == Some(i) || force.abs() >= limit - self.at_limit[i];
             if *limit > 0.0 && at_limit {
                 *force = limit.copysign(*force);
             } else {

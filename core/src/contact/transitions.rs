@@ -41,12 +41,18 @@ impl March<'_> {
             || (rate[0] >= -AT_REST * size[0] && rate[1] > AT_REST * size[1])
     }
 
-    /// First angle in a cell of the grid at which a point changes its state, and the point.
-    pub(super) fn next_transition(&self, from: &Jet, to: &Jet) -> Option<(f64, usize)> {
+    /// First angle in a cell of the grid at which a point changes its state, and the point; of all but
+    /// one that is left alone.
+    pub(super) fn next_transition(
+        &self,
+        from: &Jet,
+        to: &Jet,
+        alone: Option<usize>,
+    ) -> Option<(f64, usize)> {
         let mut first: Option<(f64, usize)> = None;
         for i in 0..self.law.limits.len() {
             let limit = self.law.limits[i];
-            if !(limit > 0.0 && limit.is_finite()) {
+            if !(limit > 0.0 && limit.is_finite()) || alone == Some(i) {
                 continue;
             }
             let theta = match self.here.states[i] {
@@ -66,7 +72,7 @@ impl March<'_> {
         let force = |jet: &Jet| self.tangent_row(i, jet.value()) - self.here.offset[i];
         let rate = |jet: &Jet| self.tangent_row(i, jet.slope());
         let (start, end) = (force(from), force(to));
-        let most = limit * (1.0 + AT_LIMIT);
+        let most = limit + self.at_limit[i];
         let series = self.own_series(&self.sets[self.here.set].force, i);
         let offset = self.here.offset[i];
         let value = |theta: f64| {
