@@ -65,6 +65,8 @@ pub(super) struct March<'a> {
     series: &'a [f64],
     /// Displacements at the ends of the cells of a grid.
     grid: Vec<Jet>,
+    /// Largest elastic force without any slip.
+    elastic: f64,
     /// Distance from its limit at which each point is at it.
     pub(super) at_limit: Vec<f64>,
     pub(super) sets: Vec<ActiveSet>,
@@ -81,7 +83,7 @@ impl PeriodicMarch {
         let mut march = March::new(law, motion, derivative);
         let sign = if motion.table.harmonics().half_wave() { -1.0 } else { 1.0 };
         let (mut resolved, mut last_change) = (true, f64::INFINITY);
-        let elastic = march.elastic_forces().into_iter().fold(0.0, f64::max);
+        let elastic = march.elastic;
         for round in 0..MOST_ROUNDS {
             let start = march.jet(0.0);
             let before = march.force_at(&start);
@@ -132,6 +134,7 @@ impl<'a> March<'a> {
             harmonics,
             series,
             grid: Jet::grid(motion),
+            elastic: 0.0,
             at_limit: Vec::new(),
             sets,
             here,
@@ -144,8 +147,9 @@ impl<'a> March<'a> {
         let distance = |(elastic, limit): (f64, &f64)| {
             (ROUNDING * elastic).max(AT_LIMIT * limit).min(NEAR_LIMIT * limit)
         };
-        let elastic = march.elastic_forces().into_iter();
-        march.at_limit = elastic.zip(&law.limits).map(distance).collect();
+        let elastic = march.elastic_forces();
+        march.elastic = elastic.iter().copied().fold(0.0, f64::max);
+        march.at_limit = elastic.into_iter().zip(&law.limits).map(distance).collect();
         march.begin();
         march
     }
