@@ -80,7 +80,7 @@ fn tangents_of_random_dampers_match_differences() {
 }
 
 /// The cells in which transitions are looked for are no part of the law: their number grows with the
-/// harmonics, and one that nothing moves in must not change the forces. Two points of small limits that
+/// harmonics, and harmonics that are zero must not change the forces. Two points of small limits that
 /// move against each other turn, stick and slip again within one cell.
 #[test]
 fn forces_of_points_that_turn_together_do_not_depend_on_the_grid() {

@@ -124,3 +124,14 @@ def test_a_point_at_a_limit_is_told_of_them_too() -> None:
     held = ss.forced_response(sliding(6, 2, 1e3), [20.0], max_harmonics=3)
     assert held.status[0] == "harmonics limit"
     assert not any(one.code == "rigid-contacts" for one in held.diagnostics)
+
+
+def test_what_rounding_has_left_of_a_rigid_stop_is_no_solution():
+    """Steps relative to a gap say nothing of forces 1e12 times as stiff: the equations have to hold."""
+    springs = 1e4 * np.array([[2.0, -1.0], [-1.0, 2.0]])
+    structure = ss.Structure(np.eye(2), springs, 1e-4 * springs + 2.0 * np.eye(2), ["a", "b"])
+    stop = ss.Stop("a", stiffness=1e16, gap=1e-4)
+    model = ss.Model(structure, [stop], [ss.Force("b", 10.0)])
+    frf = ss.forced_response(model, np.linspace(80.0, 130.0, 6), harmonics=7)
+    assert frf.arrays.residual.max() > 1.0
+    assert (frf.arrays.residual[frf.converged] < 1e-8).all()

@@ -106,3 +106,24 @@ def test_dissipation_is_that_of_the_energy_balance(seed):
     exact = ss.exact_response(model, [omega])
     lost = exact.energy.work[0] - exact.energy.viscous[0]
     assert exact.dissipation(0).sum() == pytest.approx(lost, rel=1e-6, abs=1e-12)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_points_that_turn_together_leave_no_residual(seed):
+    """Modes beside one another let two points of a damper stick and slip again at nearly one time."""
+    rng = np.random.default_rng(seed)
+    for _ in range(50):
+        basis = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+        modes = 1e3 * (1.0 + 10 ** rng.uniform(-4.0, -1.0, 3))
+        stiffness = basis @ np.diag(modes**2) @ basis.T
+        damping = basis @ np.diag(2e-3 * modes) @ basis.T
+        structure = ss.Structure(np.eye(3), stiffness, damping, ["0", "1", "2"])
+        own = 10 ** rng.uniform(5.0, 7.5) * np.array([[1.2, -0.5], [-0.5, 1.0]])
+        damper = ss.StructuralDamper(
+            ["0", "1"], stiffness=own, slip_forces=10 ** rng.uniform(-2.5, 0.5, 2)
+        )
+        model = ss.Model(structure, [damper], [ss.Force("0", 1.0)])
+        omega = np.linspace(0.95 * modes.min(), 1.05 * modes.max(), 20)
+        frf = ss.forced_response(model, omega, harmonics=int(rng.choice([3, 5, 9, 15])))
+        assert frf.converged.all()
+        assert frf.arrays.residual.max() < 1e-10
