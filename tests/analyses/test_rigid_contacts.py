@@ -127,7 +127,7 @@ def test_a_point_at_a_limit_is_told_of_them_too() -> None:
 
 
 def test_what_rounding_has_left_of_a_rigid_stop_is_no_solution():
-    """Steps relative to a gap say nothing of forces 1e12 times as stiff: the equations have to hold."""
+    """Small steps say nothing of forces 1e12 times as stiff: the equations have to hold."""
     springs = 1e4 * np.array([[2.0, -1.0], [-1.0, 2.0]])
     structure = ss.Structure(np.eye(2), springs, 1e-4 * springs + 2.0 * np.eye(2), ["a", "b"])
     stop = ss.Stop("a", stiffness=1e16, gap=1e-4)

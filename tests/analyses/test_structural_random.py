@@ -110,7 +110,7 @@ def test_dissipation_is_that_of_the_energy_balance(seed):
 
 @pytest.mark.parametrize("seed", range(6))
 def test_points_that_turn_together_leave_no_residual(seed):
-    """Modes beside one another let two points of a damper stick and slip again at nearly one time."""
+    """Close modes let two points of a damper stick and slip again at nearly one time."""
     rng = np.random.default_rng(seed)
     for _ in range(50):
         basis = np.linalg.qr(rng.normal(size=(3, 3)))[0]
