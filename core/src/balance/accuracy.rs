@@ -190,6 +190,9 @@ pub(super) fn estimate(
     if extended.set_omega_beside(point.omega, solved).is_err() {
         return infinite;
     }
+    if let Some(solved) = solved {
+        extended.begin_beside(solved, None);
+    }
     let mut x = solution.recast(table.harmonics());
     let (mut defect, mut step) = (vec![0.0; x.len()], vec![0.0; x.len()]);
     extended.residual(&x, &mut defect);

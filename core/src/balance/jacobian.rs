@@ -23,6 +23,10 @@ impl Condensed<'_> {
     /// Residual, with the tangents of the laws or without.
     fn evaluate(&mut self, x: &[f64], tangent: bool, out: &mut [f64]) {
         let mut loads = std::mem::take(if tangent { &mut self.loads } else { &mut self.values });
+        if !tangent {
+            let known = loads.iter_mut().zip(&self.loads);
+            known.for_each(|(own, last)| own.repeated.clone_from(&last.repeated));
+        }
         let mut law_time = std::time::Duration::ZERO;
         Profile::time(&mut law_time, || {
             for (index, load) in loads.iter_mut().enumerate() {
@@ -31,10 +35,12 @@ impl Condensed<'_> {
                     None => self.write_load(index, motion, tangent, load),
                     Some((share, laws)) => {
                         laws[index].slip_load(motion, tangent, load);
+                        load.make_room(tangent);
                         self.add_lost_stiffness(index, 1.0 - share, motion, tangent, load);
                     }
                 }
                 if self.loss > 0.0 {
+                    load.make_room(tangent);
                     self.add_loss(index, motion, tangent, load);
                 }
             }

@@ -15,12 +15,29 @@ use crate::solve::System as _;
 use crate::structure::Quantity;
 use crate::Error;
 use faer::c64;
+use std::f64::consts::TAU;
 
 /// What N samples are compared with, 4 N + 2: an instant of the one falls between two of the other.
 const FINER: [usize; 2] = [4, 2];
 /// The step to the finer march times this is the whole error if that is of first order, and a
 /// little more than it if it is of second order.
 pub(super) const CAUTION: f64 = 4.0 / 3.0;
+
+/// Change of a state over a round of the finer march that counts as none, relative to the square of the
+/// distance of its samples.
+const UNFELT: f64 = 1e-4;
+
+impl Condensed<'_> {
+    /// Has marches begin with the states that those of other equations of these contacts repeat, and end where
+    /// they come back to within a part.
+    pub(super) fn begin_beside(&mut self, other: &Self, within: Option<f64>) {
+        for (own, other) in self.loads.iter_mut().zip(&other.loads) {
+            own.repeated.clone_from(&other.repeated);
+            let known = own.repeated.as_mut().zip(within);
+            known.into_iter().for_each(|(known, within)| known.within = within);
+        }
+    }
+}
 
 /// Samples of the march that one through `samples` is compared with.
 pub(super) fn finer_than(samples: usize) -> usize {
@@ -43,6 +60,9 @@ pub(super) fn sampling_errors(
         return Ok(infinite);
     }
     let (mut defect, mut step) = (vec![0.0; x.len()], vec![0.0; x.len()]);
+    // What rounds still change counts for nothing beside the error of straight lines between samples.
+    let apart = TAU / finer_than(point.samples.unwrap_or(1)) as f64;
+    fine.begin_beside(solved, Some(UNFELT * apart * apart));
     fine.value(x, &mut defect);
     let slips = |load: &[f64]| load.iter().any(|q| *q != 0.0);
     let mut slip_load = fine.slip_load();

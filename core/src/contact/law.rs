@@ -5,6 +5,7 @@
 //! find q alone; it vanishes while a contact sticks.
 
 use super::backbone::LoadingCurve;
+use super::lap::{Lap, Repeated};
 use super::point_state::Phase;
 use super::return_map::ReturnMapJacobian;
 use super::slip_element::Element;
@@ -34,6 +35,9 @@ pub struct SlipLoad {
     /// Whether the tangent differs from zero: a contact that sticks for good is a linear spring
     /// and drops out of the Newton system.
     pub active: bool,
+    /// The state that a march has repeated, if it is the same whatever the march begins with; the next one
+    /// begins with it.
+    pub repeated: Option<Repeated>,
 }
 
 impl SlipLoad {
@@ -45,6 +49,13 @@ impl SlipLoad {
             self.tangent.resize(size * size, 0.0);
         }
         self.active = false;
+    }
+
+    /// Gives a tangent of zeros its room.
+    pub(crate) fn make_room(&mut self, tangent: bool) {
+        if tangent && self.tangent.is_empty() {
+            self.tangent.resize(self.value.len().pow(2), 0.0);
+        }
     }
 
     /// See [`Harmonics::halve_means`]; the derivative follows.
@@ -168,6 +179,12 @@ pub trait ContactLaw: Send + Sync + std::fmt::Debug {
         _state: &mut [f64],
         _force: &mut [f64],
     ) -> bool {
+        false
+    }
+
+    /// Takes a lap at once, of a law whose steps bring states nearer to one another: a motion on which it
+    /// slips then has one state that repeats. Nothing is taken of any other.
+    fn lap(&self, _lap: &mut Lap<'_>) -> bool {
         false
     }
 

@@ -58,7 +58,9 @@ impl<L: Deref<Target: ContactLaw>> HarmonicForce for Aft<L> {
     fn slip_load(&self, motion: Motion<'_>, tangent: bool, out: &mut SlipLoad) {
         let harmonics = motion.table.harmonics();
         let (slots, count) = (harmonics.slots(), self.law.displacements());
-        out.reset(count * slots, tangent);
+        let known = out.repeated.take();
+        // A tangent of zeros is not worth its room.
+        out.reset(count * slots, tangent && self.is_sum());
         let mut own = SlipLoad::default();
         for part in self.parts() {
             part.slip_load(motion, tangent, &mut own);
@@ -69,18 +71,27 @@ impl<L: Deref<Target: ContactLaw>> HarmonicForce for Aft<L> {
         if self.is_sum() {
             return;
         }
+        let mut sampled = None;
+        if let Some(known) = known {
+            let samples = sampled.insert(Samples::of(motion, self.samples));
+            let round = self.resume(samples, &known);
+            if round.is_some_and(|round| self.write(samples, &round, [tangent, true], slots, out)) {
+                return out.halve_means(harmonics);
+            }
+        }
         // Of several displacements the start is known whether they slip or not.
         let begun = (count > 1).then(|| self.begin(motion));
         if let Some(lost) = begun.as_ref().and_then(|begun| self.surely_unslipped(motion, begun)) {
-            return keep(lost, harmonics, out);
+            return keep(lost, harmonics, tangent, out);
         }
-        let samples = Samples::of(motion, self.samples);
+        let samples = sampled.unwrap_or_else(|| Samples::of(motion, self.samples));
         let basis = |n: usize| &samples.basis[n * slots..(n + 1) * slots];
         if let Some((load, ends)) = self.stuck(&samples, motion.residual) {
             if harmonics.has_mean() {
                 out.value[0] = load;
                 out.active = ends.iter().any(|(_, slope)| *slope != 0.0);
-                for (n, slope) in ends.into_iter().filter(|_| tangent) {
+                out.make_room(tangent && out.active);
+                for (n, slope) in ends.into_iter().filter(|_| tangent && out.active) {
                     let row = out.tangent.iter_mut().zip(basis(n));
                     row.for_each(|(entry, b)| *entry += slope * b);
                 }
@@ -88,33 +99,25 @@ impl<L: Deref<Target: ContactLaw>> HarmonicForce for Aft<L> {
             return;
         }
         let begun = begun.unwrap_or_else(|| self.begin(motion));
-        let stiffness = self.law.stiffness();
         if let Some(lost) = self.unslipped(&samples, &begun) {
-            return keep(lost, harmonics, out);
+            return keep(lost, harmonics, tangent, out);
         }
-        let round = self.march(&samples, &begun, false);
-        let lost = |n: usize, i: usize| {
-            let u = samples.at(n);
-            let stuck: f64 = (0..count).map(|j| stiffness[(i, j)] * u[j]).sum();
-            (stuck - round.force[n * count + i], stuck)
-        };
+        let round = self.march(&samples, &begun);
         if !round.slipped {
             // What a law holds without displacement, as behind a gap, is all there is.
+            let stiffness = self.law.stiffness();
             for i in (0..count).filter(|_| harmonics.has_mean()) {
-                let (q, stuck) = lost(0, i);
+                let u = samples.at(0);
+                let stuck: f64 = (0..count).map(|j| stiffness[(i, j)] * u[j]).sum();
+                let q = stuck - round.force[i];
                 if q.abs() > ROUNDING * stuck.abs() {
                     out.value[i * slots] = q;
                 }
             }
             return;
         }
-        out.active = true;
-        let mut taken = vec![0.0; samples.count];
-        for (i, series) in out.value.chunks_exact_mut(slots).enumerate() {
-            taken.iter_mut().enumerate().for_each(|(n, q)| *q = lost(n, i).0);
-            samples.project(&taken, series);
-        }
-        if tangent {
+        if !self.write(&samples, &round, [tangent, false], slots, out) {
+            out.make_room(true);
             self.differentiate(&samples, &begun, &round.restarts, slots, &mut out.tangent);
         }
         out.halve_means(harmonics);
@@ -144,13 +147,14 @@ impl<L: Deref<Target: ContactLaw>> HarmonicForce for Aft<L> {
         if sticks || self.unslipped(&samples, &begun).is_some() {
             return;
         }
-        let round = self.march(&samples, &begun, true);
+        let round = self.march(&samples, &begun);
+        let [slipping, work] = self.account(&samples, &round);
         let spans = (self.samples / samples.count) as f64;
         // Without slip all work is elastic, and only rounding is left of it.
-        let slips = round.slipping.iter().any(|share| *share > 0.0);
+        let slips = slipping.iter().any(|share| *share > 0.0);
         for (i, summary) in out.iter_mut().enumerate().filter(|_| slips) {
-            summary.slip_fraction = round.slipping[i] / samples.count as f64;
-            summary.dissipation = spans * round.work[i];
+            summary.slip_fraction = slipping[i] / samples.count as f64;
+            summary.dissipation = spans * work[i];
         }
     }
 
@@ -197,13 +201,19 @@ impl<L: Deref<Target: ContactLaw>> HarmonicForce for Aft<L> {
 }
 
 /// Writes what slip takes off the stuck spring's force where nothing slips: it is constant.
-fn keep(Unslipped { value, rate }: Unslipped, harmonics: &Harmonics, out: &mut SlipLoad) {
+fn keep(
+    Unslipped { value, rate }: Unslipped,
+    harmonics: &Harmonics,
+    tangent: bool,
+    out: &mut SlipLoad,
+) {
     if !harmonics.has_mean() {
         return;
     }
     let (slots, size) = (harmonics.slots(), out.value.len());
     out.value.iter_mut().step_by(slots).zip(value).for_each(|(mean, q)| *mean = q);
     out.active = rate.iter().any(|rate| *rate != 0.0);
+    out.make_room(tangent && out.active);
     let means = out.tangent.chunks_exact_mut(size).step_by(slots);
     means.zip(rate.chunks_exact(size)).for_each(|(row, rate)| row.copy_from_slice(rate));
 }

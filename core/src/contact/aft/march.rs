@@ -1,52 +1,38 @@
 //! The march of the sampled evaluation: from instant to instant until the state repeats, and its
 //! derivative.
 
-use super::rate::{follows, is_elastic, FrictionWork, Rate};
+use super::lap_derivative::{is_identity, LapDerivative};
+use super::rate::{follows, is_elastic, Rate};
 use super::restart::Restart;
+use super::round::{distance, Round};
 use super::samples::Samples;
 use crate::contact::periodic_march::SLOW;
 use crate::contact::return_map::ReturnMapJacobian;
-use crate::contact::{Aft, AssumedStart, ContactLaw, Element, Motion, Residual, Unslipped};
+use crate::contact::{Aft, AssumedStart, ContactLaw, Motion, Residual, Unslipped};
 use faer::Mat;
-use std::f64::consts::TAU;
 use std::ops::Deref;
 
 /// Rounds after which a march ends, repeated or not. An elastoplastic contact forgets its start with
 /// the first slip in either direction; several coupled points take some rounds more.
 const MOST_ROUNDS: usize = 200;
 /// Change of the state over a round, relative to the largest, that counts as none, …
-const PERIODIC: f64 = 1e-13;
+pub(super) const PERIODIC: f64 = 1e-13;
 /// … and that is small enough for the fixed point of the linearised round to be exact.
 const SMALL: f64 = 1e-7;
 /// Rounds after which slip is taken to recur, so that its fixed point is sought.
 const PUSHES: usize = 3;
 
-/// One round of states that repeat.
-pub(super) struct Round {
-    /// States and forces, instant after instant.
-    pub(super) state: Vec<f64>,
-    pub(super) force: Vec<f64>,
-    /// Rounds marched until the states repeated, by how each has begun.
-    pub(super) restarts: Vec<Restart>,
-    /// Sum over the steps of the share in slip, per displacement.
-    pub(super) slipping: Vec<f64>,
-    /// Friction work of every displacement over the span, if it was asked for.
-    pub(super) work: Vec<f64>,
-    /// Whether the force has ever departed from the stuck spring's, by slip or otherwise.
-    pub(super) slipped: bool,
-}
-
 /// What a march takes from instant to instant.
 pub(super) struct Step {
-    state: Vec<f64>,
-    force: Vec<f64>,
-    jacobian: ReturnMapJacobian,
+    pub(super) state: Vec<f64>,
+    pub(super) force: Vec<f64>,
+    pub(super) jacobian: ReturnMapJacobian,
     /// Displacements at the end, in the span or mirrored behind it.
-    after: Vec<f64>,
+    pub(super) after: Vec<f64>,
     /// The derivative of all steps that are those of the spring, if there has been one.
-    spring: Option<ReturnMapJacobian>,
+    pub(super) spring: Option<ReturnMapJacobian>,
     /// Whether that is the derivative at hand.
-    springs: bool,
+    pub(super) springs: bool,
 }
 
 impl<L: Deref<Target: ContactLaw>> Aft<L> {
@@ -125,6 +111,23 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
         step
     }
 
+    /// The first instant in a state that repeats.
+    pub(super) fn step_from(&self, samples: &Samples, state: &[f64]) -> Step {
+        let u = samples.at(0);
+        let mut step = Step {
+            state: state.to_vec(),
+            force: vec![0.0; u.len()],
+            jacobian: ReturnMapJacobian::default(),
+            after: u.to_vec(),
+            spring: None,
+            springs: false,
+        };
+        self.law.return_map(u, u, &mut step.state, &mut step.force, Some(&mut step.jacobian));
+        // A step to where it is may round.
+        step.state.copy_from_slice(state);
+        step
+    }
+
     /// Goes from instant n − 1 to instant n, which may be the first of the next span; with the
     /// derivative of the step, if asked for.
     pub(super) fn advance(&self, samples: &Samples, n: usize, step: &mut Step, derived: bool) {
@@ -148,63 +151,29 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
         }
     }
 
-    /// Marches until the state repeats; with `account` of the friction work.
-    pub(super) fn march(&self, samples: &Samples, begun: &AssumedStart, account: bool) -> Round {
-        let (count, size) = (self.law.displacements(), self.law.state_size());
-        let (stiffness, state_stiffness) = (self.law.stiffness(), self.law.state_stiffness());
-        let departs = |step: &Step| {
-            let stays = step.springs
-                || (is_elastic(&step.jacobian, &state_stiffness)
-                    && follows(&step.jacobian, &stiffness, &state_stiffness));
-            !stays
-        };
+    /// Marches until the state repeats.
+    pub(super) fn march(&self, samples: &Samples, begun: &AssumedStart) -> Round {
+        let size = self.law.state_size();
+        let departs = self.departs();
         let mut step = self.start(samples, begun);
-        let mut round = Round {
-            state: vec![0.0; samples.count * size],
-            force: vec![0.0; samples.count * count],
-            restarts: vec![Restart::GoesOn],
-            slipping: Vec::new(),
-            work: Vec::new(),
-            // A residual force that depends on the motion varies as slip does.
-            slipped: departs(&step) || begun.moves(&step.jacobian),
-        };
-        let couples = |element: &Element| element.law.planes().is_empty();
-        let coupled = self.law.elements().is_some_and(|elements| elements.iter().all(couples));
-        let friction = account.then(|| FrictionWork::new(self.law.stiffness(), coupled));
-        let mut last_change = f64::INFINITY;
+        let mut round = Round::new(samples, size);
+        // A residual force that depends on the motion varies as slip does.
+        round.slipped = departs(&step) || begun.moves(&step.jacobian);
+        let (mut at_once, mut last_change) = (false, f64::INFINITY);
         let (mut pushes, mut jump): (usize, Option<(Vec<f64>, f64)>) = (0, None);
         loop {
-            let mut lap = (pushes >= PUSHES).then(|| Lap::new(size));
-            round.slipping = vec![0.0; count];
-            round.work = vec![0.0; count];
+            let mut lap = (pushes >= PUSHES).then(|| LapDerivative::new(size));
             let before = step.state.clone();
-            let mut largest = 0.0_f64;
-            for n in 1..=samples.count {
-                let old = (n - 1) * count;
-                round.state[(n - 1) * size..n * size].copy_from_slice(&step.state);
-                round.force[old..old + count].copy_from_slice(&step.force);
-                // Once it has slipped, forces are enough unless more is asked for.
-                let derived = account || !round.slipped || lap.is_some();
-                self.advance(samples, n, &mut step, derived);
-                if let Some(lap) = lap.as_mut().filter(|_| !step.springs) {
-                    lap.advance(&step.jacobian.by_state);
+            if lap.is_none() && self.lap(samples, &before, PERIODIC, &mut round) {
+                (at_once, step.state) = (true, round.end.clone());
+            } else {
+                if std::mem::take(&mut at_once) {
+                    self.settle(samples, &mut step);
                 }
-                round.slipped = round.slipped || departs(&step);
-                largest = step.state.iter().fold(largest, |most, z| most.max(z.abs()));
-                let shares = round.slipping.iter_mut().zip(&step.jacobian.slipping);
-                shares.for_each(|(sum, share)| *sum += share);
-                if let Some(friction) = &friction {
-                    let du: Vec<f64> =
-                        step.after.iter().zip(samples.at(n - 1)).map(|(a, b)| a - b).collect();
-                    let before = &round.force[old..old + count];
-                    let slipping = &step.jacobian.slipping;
-                    friction.add(before, &step.force, &du, slipping, &mut round.work);
-                }
+                self.pass(samples, &mut step, lap.as_mut(), &mut round);
             }
-            step.state.iter_mut().for_each(|z| *z *= samples.sign);
-            step.force.iter_mut().for_each(|f| *f *= samples.sign);
-            let change = step.state.iter().zip(&before).map(|(a, b)| (a - b).abs());
-            let change = change.fold(0.0, f64::max);
+            let largest = round.largest;
+            let change = distance(&step.state, &before);
             let slips = lap.as_ref().is_none_or(|lap| !is_identity(&lap.by, size));
             let small = |change: f64| change <= SMALL * largest;
             // A jump that was not small is confirmed by another one.
@@ -238,6 +207,50 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
             round.restarts.push(restart);
             (pushes, last_change) = (pushes + 1, change);
         }
+    }
+
+    /// Whether the force departs from the stuck spring's in a step.
+    fn departs(&self) -> impl Fn(&Step) -> bool {
+        let (stiffness, state_stiffness) = (self.law.stiffness(), self.law.state_stiffness());
+        move |step| {
+            let stays = step.springs
+                || (is_elastic(&step.jacobian, &state_stiffness)
+                    && follows(&step.jacobian, &stiffness, &state_stiffness));
+            !stays
+        }
+    }
+
+    /// Takes a round step by step, with its derivative if it is asked for.
+    fn pass(
+        &self,
+        samples: &Samples,
+        step: &mut Step,
+        mut lap: Option<&mut LapDerivative>,
+        round: &mut Round,
+    ) {
+        let (count, size) = (self.law.displacements(), self.law.state_size());
+        let departs = self.departs();
+        (round.largest, round.departure) = (0.0, None);
+        for n in 1..=samples.count {
+            let old = (n - 1) * count;
+            round.state[(n - 1) * size..n * size].copy_from_slice(&step.state);
+            round.force[old..old + count].copy_from_slice(&step.force);
+            // Once it has slipped, forces are enough unless more is asked for.
+            let derived = !round.slipped || lap.is_some();
+            self.advance(samples, n, step, derived);
+            if let Some(lap) = lap.as_mut().filter(|_| !step.springs) {
+                lap.advance(&step.jacobian.by_state);
+            }
+            let departed = derived && departs(step);
+            if departed || !derived {
+                round.departure = Some(n - 1);
+            }
+            round.slipped |= departed;
+            round.largest = step.state.iter().fold(round.largest, |most, z| most.max(z.abs()));
+        }
+        step.state.iter_mut().for_each(|z| *z *= samples.sign);
+        step.force.iter_mut().for_each(|f| *f *= samples.sign);
+        round.end.clone_from(&step.state);
     }
 
     /// Gives a state at the first instant its force.
@@ -298,94 +311,8 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
         }
     }
 
-    /// States and forces at equidistant instants. Between two instants of the march the law goes on
-    /// from the earlier one.
-    pub(super) fn history(&self, motion: Motion<'_>, samples: usize) -> (Vec<f64>, Vec<f64>) {
-        if self.is_sum() {
-            let parts: Vec<_> =
-                self.parts().iter().map(|part| part.history(motion, samples)).collect();
-            let mut states = Vec::with_capacity(samples * self.law.state_size());
-            for n in 0..samples {
-                for (own, _) in &parts {
-                    let width = own.len() / samples;
-                    states.extend(&own[n * width..(n + 1) * width]);
-                }
-            }
-            let mut forces = vec![0.0; samples * self.law.displacements()];
-            for (_, own) in &parts {
-                forces.iter_mut().zip(own).for_each(|(sum, own)| *sum += own);
-            }
-            return (states, forces);
-        }
-        let harmonics = motion.table.harmonics();
-        let (slots, count) = (harmonics.slots(), self.law.displacements());
-        let size = self.law.state_size();
-        let grid = Samples::of(motion, self.samples);
-        let stuck = self.stuck(&grid, motion.residual);
-        let round = self.march(&grid, &self.begin(motion), false);
-        let (mut states, mut forces) = (Vec::new(), Vec::new());
-        for m in 0..samples {
-            let theta = TAU * m as f64 / samples as f64;
-            let u: Vec<f64> = motion
-                .displacement
-                .chunks_exact(slots)
-                .map(|series| harmonics.jet(series, theta)[0])
-                .collect();
-            let instant = (m * self.samples / samples) % self.samples;
-            let n = instant % grid.count;
-            let sign = if instant < grid.count { 1.0 } else { grid.sign };
-            let mut state = round.state[n * size..(n + 1) * size].to_vec();
-            let mut force = vec![0.0; count];
-            self.law.return_map(grid.at(n), &scaled(&u, sign), &mut state, &mut force, None);
-            if let Some((load, _)) = stuck {
-                let mean = if harmonics.has_mean() { load } else { 0.0 };
-                force[0] = sign * (self.law.stiffness()[(0, 0)] * u[0] - mean);
-                if size == 1 {
-                    state[0] = force[0];
-                }
-            }
-            states.extend(scaled(&state, sign));
-            forces.extend(scaled(&force, sign));
-        }
-        (states, forces)
-    }
 }
 
-/// Derivative of a part of a round: numbers of state by those that it begins with, row by row.
-struct Lap {
-    size: usize,
-    by: Vec<f64>,
-    room: Vec<f64>,
-}
-
-impl Lap {
-    fn new(size: usize) -> Self {
-        let by: Vec<f64> = (0..size * size).map(|at| own(at, size)).collect();
-        Self { size, room: by.clone(), by }
-    }
-
-    /// Goes on by a step with a derivative.
-    fn advance(&mut self, step: &[f64]) {
-        let size = self.size;
-        if is_identity(step, size) {
-            return;
-        }
-        for (at, entry) in self.room.iter_mut().enumerate() {
-            let (row, column) = (at / size * size, at % size);
-            *entry = (0..size).map(|k| step[row + k] * self.by[k * size + column]).sum();
-        }
-        std::mem::swap(&mut self.by, &mut self.room);
-    }
-}
-
-fn own(at: usize, size: usize) -> f64 {
-    f64::from(u8::from(at / size == at % size))
-}
-
-fn is_identity(matrix: &[f64], size: usize) -> bool {
-    matrix.iter().enumerate().all(|(at, entry)| *entry == own(at, size))
-}
-
-fn scaled(values: &[f64], factor: f64) -> Vec<f64> {
+pub(super) fn scaled(values: &[f64], factor: f64) -> Vec<f64> {
     values.iter().map(|value| factor * value).collect()
 }

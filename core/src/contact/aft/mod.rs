@@ -1,9 +1,13 @@
 //! Harmonics by samples of a period, for laws without closed forms.
 
+mod history;
+mod lap_derivative;
 mod law;
 mod march;
 mod rate;
+mod repeated;
 mod restart;
+mod round;
 mod samples;
 
 pub(super) use law::of_the_law;

@@ -28,6 +28,11 @@ impl Rate {
         Self { slots, stiffness, state_stiffness, next: value.clone(), value }
     }
 
+    /// Its rows, number of state by number of state.
+    pub(super) fn rows(&self) -> &[f64] {
+        &self.value
+    }
+
     /// Multiplies the derivative by a sign.
     pub(super) fn scale(&mut self, sign: f64) {
         self.value.iter_mut().for_each(|rate| *rate *= sign);

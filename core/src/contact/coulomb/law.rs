@@ -18,7 +18,7 @@ use crate::contact::parameter::number;
 use crate::contact::return_map::ReturnMapJacobian;
 use crate::contact::slip_element::Element;
 use crate::contact::{
-    AssumedStart, ContactLaw, Describing, Held, Motion, Parameter, Parameters, Unslipped,
+    AssumedStart, ContactLaw, Describing, Held, Lap, Motion, Parameter, Parameters, Unslipped,
 };
 use crate::Error;
 use faer::Mat;
@@ -250,6 +250,11 @@ impl ContactLaw for Coulomb {
 
     fn springs(&self, before: &[f64], after: &[f64], state: &mut [f64], force: &mut [f64]) -> bool {
         self.spring_step([before, after], state, force)
+    }
+
+    fn lap(&self, lap: &mut Lap<'_>) -> bool {
+        self.straight_lap(lap);
+        true
     }
 
     fn return_map(

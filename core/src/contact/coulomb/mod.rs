@@ -9,6 +9,7 @@ mod dual;
 mod element;
 mod grid;
 mod harmonics;
+mod lap;
 mod law;
 mod panel;
 mod period;

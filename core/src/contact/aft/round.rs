@@ -1,0 +1,168 @@
+//! A round of a march, and what happens in it.
+
+use super::march::PERIODIC;
+use super::rate::FrictionWork;
+use super::restart::Restart;
+use super::samples::Samples;
+use crate::contact::{Aft, ContactLaw, Element, Lap, Repeated, SlipLoad};
+use std::ops::Deref;
+
+/// Rounds that a state from beside takes to repeat itself.
+const MOST_ROUNDS: usize = 4;
+/// Share of a change of the state that slip leaves of it in a round, at most, where the state does not depend
+/// on what a march begins with.
+pub(super) const CONTRACTS: f64 = 0.1;
+
+/// One round of states that repeat.
+pub(super) struct Round {
+    /// States and forces, instant after instant.
+    pub(super) state: Vec<f64>,
+    pub(super) force: Vec<f64>,
+    /// State that it ends with, mirrored under half-wave symmetry.
+    pub(super) end: Vec<f64>,
+    /// The last step in which the force may have departed from the stuck spring's, if there is one.
+    pub(super) departure: Option<usize>,
+    /// Largest number of the state.
+    pub(super) largest: f64,
+    /// Rounds marched until the states repeated, by how each has begun.
+    pub(super) restarts: Vec<Restart>,
+    /// Whether the force has ever departed from the stuck spring's, by slip or otherwise.
+    pub(super) slipped: bool,
+    /// Whether its law takes rounds at once.
+    pub(super) at_once: bool,
+}
+
+impl Round {
+    /// None yet, of a law along samples.
+    pub(super) fn new(samples: &Samples, size: usize) -> Self {
+        Self {
+            state: vec![f64::NAN; samples.count * size],
+            force: vec![0.0; samples.displacement.len()],
+            end: vec![f64::NAN; size],
+            departure: None,
+            largest: 0.0,
+            restarts: vec![Restart::GoesOn],
+            slipped: false,
+            at_once: false,
+        }
+    }
+}
+
+impl<L: Deref<Target: ContactLaw>> Aft<L> {
+    /// Takes a round at once; `false` of a law that goes step by step.
+    pub(super) fn lap(
+        &self,
+        samples: &Samples,
+        state: &[f64],
+        within: f64,
+        round: &mut Round,
+    ) -> bool {
+        let mut lap = Lap {
+            displacement: &samples.displacement,
+            sign: samples.sign,
+            state,
+            states: &mut round.state,
+            forces: &mut round.force,
+            end: &mut round.end,
+            departure: round.departure,
+            largest: round.largest,
+            within,
+        };
+        if !self.law.lap(&mut lap) {
+            return false;
+        }
+        (round.departure, round.largest) = (lap.departure, lap.largest);
+        round.at_once = true;
+        round.slipped |= round.departure.is_some();
+        true
+    }
+
+    /// Marches from a state that a motion beside has repeated. Nothing where it does not slip, or where rounds
+    /// do not soon forget what they have begun with: the march then depends on its own begin.
+    pub(super) fn resume(&self, samples: &Samples, from: &Repeated) -> Option<Round> {
+        let mut round = Round::new(samples, self.law.state_size());
+        let (mut state, mut last_change) = (from.state.clone(), f64::INFINITY);
+        for _ in 0..MOST_ROUNDS {
+            if state.len() != round.end.len() || !self.lap(samples, &state, from.within, &mut round) {
+                return None;
+            }
+            let change = distance(&round.end, &state);
+            if change <= from.within * round.largest {
+                return round.departure.is_some().then_some(round);
+            }
+            if change > CONTRACTS * last_change {
+                return None;
+            }
+            (last_change, state) = (change, round.end.clone());
+        }
+        None
+    }
+
+    /// Writes the slip load of a round that repeats, and its tangent, if that is asked for: `false` if the
+    /// round does not tell it, as it depends on the start of the march.
+    pub(super) fn write(
+        &self,
+        samples: &Samples,
+        round: &Round,
+        [tangent, resumed]: [bool; 2],
+        slots: usize,
+        out: &mut SlipLoad,
+    ) -> bool {
+        let (count, stiffness) = (self.law.displacements(), self.law.stiffness());
+        let begun = &round.state[..self.law.state_size()];
+        let forgets = resumed || (round.at_once && round.departure.is_some());
+        let mut told = !tangent;
+        if tangent && forgets {
+            out.make_room(true);
+            told = self.differentiate_repeated(samples, begun, slots, &mut out.tangent);
+            if !told {
+                out.tangent.clear();
+            }
+        }
+        if !told && resumed {
+            return false;
+        }
+        if told && (resumed || (tangent && forgets)) {
+            out.repeated = Some(Repeated { state: begun.to_vec(), within: PERIODIC });
+        }
+        out.active = true;
+        let mut taken = vec![0.0; samples.count];
+        for (i, series) in out.value.chunks_exact_mut(slots).enumerate() {
+            let held: Vec<f64> = (0..count).map(|j| stiffness[(i, j)]).collect();
+            let instants = samples.displacement.chunks_exact(count);
+            let forces = round.force.iter().skip(i).step_by(count);
+            for ((taken, u), force) in taken.iter_mut().zip(instants).zip(forces) {
+                let stuck: f64 = held.iter().zip(u).map(|(k, u)| k * u).sum();
+                *taken = stuck - force;
+            }
+            samples.project(&taken, series);
+        }
+        told
+    }
+
+    /// Share of every displacement in slip, and its friction work, over a round that repeats.
+    pub(super) fn account(&self, samples: &Samples, round: &Round) -> [Vec<f64>; 2] {
+        let count = self.law.displacements();
+        let couples = |element: &Element| element.law.planes().is_empty();
+        let coupled = self.law.elements().is_some_and(|elements| elements.iter().all(couples));
+        let friction = FrictionWork::new(self.law.stiffness(), coupled);
+        let mut step = self.step_from(samples, &round.state[..self.law.state_size()]);
+        let (mut slipping, mut work) = (vec![0.0; count], vec![0.0; count]);
+        let (mut before, mut du) = (vec![0.0; count], vec![0.0; count]);
+        for n in 1..=samples.count {
+            before.copy_from_slice(&round.force[(n - 1) * count..n * count]);
+            self.advance(samples, n, &mut step, true);
+            let ends = step.after.iter().zip(samples.at(n - 1));
+            du.iter_mut().zip(ends).for_each(|(du, (after, before))| *du = after - before);
+            let shares = &step.jacobian.slipping;
+            slipping.iter_mut().zip(shares).for_each(|(sum, share)| *sum += share);
+            friction.add(&before, &step.force, &du, shares, &mut work);
+        }
+        [slipping, work]
+    }
+}
+
+/// Largest difference of two states.
+pub(super) fn distance(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
