@@ -76,7 +76,11 @@ impl ForcedBalance<'_> {
         if self.settings.method != Method::Newton {
             equations.densify();
         }
+        let states = self.neighbour.states.iter();
+        equations.loads.iter_mut().zip(states).for_each(|(load, s)| load.repeated.clone_from(s));
         let solved = self.solve_equations(&mut equations, omega, start, resolution.samples)?;
+        let states = equations.loads.iter_mut().map(|load| load.repeated.take());
+        self.neighbour.states = states.collect();
         self.add_profile(&equations.profile);
         Ok(solved)
     }

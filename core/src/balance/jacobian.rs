@@ -80,7 +80,10 @@ impl Condensed<'_> {
         self.factor = match (&mut self.linear, compliance.ring()) {
             (Linear::Modal(orders), _) => {
                 let rough = (!self.fine).then_some(&*orders);
-                Some(Factor::Krylov(KrylovNewton::new(compliance, [&active, &yielding], rough)))
+                let (points, slots) = (self.model.points(), harmonics.slots());
+                let loads = Loads { loads: &self.loads, points, slots };
+                let krylov = KrylovNewton::new(compliance, [&active, &yielding], loads, rough);
+                Some(Factor::Krylov(krylov))
             }
             (Linear::Ring { orders, .. }, Some(ring)) => {
                 Some(if RingNewton::suits(ring, harmonics.slots(), active.len()) {
@@ -128,7 +131,7 @@ impl Condensed<'_> {
             Linear::Modal(orders) => {
                 let modes = self.model.compliance().contact_modes()?;
                 let points = [&self.active_points()[..], &[]];
-                let krylov = KrylovNewton::new(self.model.compliance(), points, None);
+                let krylov = KrylovNewton::new(self.model.compliance(), points, loads, None);
                 let (step, count) =
                     krylov.solve_bordered(self.products(modes, orders), &border, right)?;
                 self.profile.products += count;

@@ -5,6 +5,7 @@
 //! products hardly depends on the number of contacts. Points are scaled by the size of their motion,
 //! as the error of the solution is judged.
 
+use super::rounded_tangents::RoundedTangents;
 use super::slip_jacobian::{Border, Loads};
 use crate::contact::SlipLoad;
 use crate::solve::{dot, gmres, norm, KrylovSettings};
@@ -41,6 +42,8 @@ pub(super) struct Products<'a> {
 pub(super) struct KrylovNewton {
     points: Vec<usize>,
     answers: Answers,
+    /// Their tangents, where rough answers are enough.
+    rounded: Option<RoundedTangents>,
 }
 
 /// What answers the loads on them.
@@ -96,11 +99,13 @@ impl KrylovNewton {
     pub(super) fn new(
         compliance: &dyn Compliance,
         [active, yielding]: [&[usize]; 2],
+        loads: Loads<'_>,
         rough: Option<&ModalOrders>,
     ) -> Self {
         let points = active.to_vec();
         let Some(modes) = compliance.contact_modes() else {
-            return Self { points, answers: Answers::Whole(ContactShapes::default()) };
+            let answers = Answers::Whole(ContactShapes::default());
+            return Self { points, answers, rounded: None };
         };
         let answers = match rough.and_then(|orders| modes.quasi_static(orders)) {
             Some(rough) => {
@@ -109,7 +114,9 @@ impl KrylovNewton {
             }
             None => Answers::Whole(modes.part(active)),
         };
-        Self { points, answers }
+        let is_rough = matches!(answers, Answers::Rough(_));
+        let rounded = is_rough.then(|| RoundedTangents::new(loads));
+        Self { points, answers, rounded }
     }
 
     /// Newton's direction, and the number of products that it took; nothing if there is none, or the
@@ -242,7 +249,12 @@ impl KrylovNewton {
 
     /// `∂Q v` of the active points, slots × points, in the room for it.
     fn loaded<'b>(&self, loads: Loads<'_>, v: &[f64], out: &'b mut [f64]) -> MatRef<'b, f64> {
-        pulp::Arch::new().dispatch(Product { loads: loads.loads, v, out: &mut *out });
+        match &self.rounded {
+            Some(rounded) => rounded.times(v, out),
+            None => {
+                pulp::Arch::new().dispatch(Product { loads: loads.loads, v, out: &mut *out });
+            }
+        }
         MatRef::from_column_major_slice(out, loads.slots, self.points.len())
     }
 }

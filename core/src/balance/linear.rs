@@ -194,9 +194,8 @@ impl Linear {
             }
             Self::Modal(orders) => {
                 let Some(modes) = compliance.contact_modes() else { return };
-                let mut motion = excite(modes, harmonics, slip_load);
-                modes.answer(orders, &mut motion, EXACT);
-                add_motion(modes, &motion, out);
+                let load = series_matrix(modes, harmonics, slip_load);
+                add_series(&modes.respond(orders, load, EXACT), out);
             }
             Self::Ring { orders, .. } => {
                 let mut q = Vec::new();
@@ -255,17 +254,28 @@ impl Linear {
     }
 }
 
+/// Series of all contacts as a matrix, slots × contacts.
+fn series_matrix<'a>(
+    modes: &dyn ContactCoordinates,
+    harmonics: &Harmonics,
+    series: &'a [f64],
+) -> MatRef<'a, f64> {
+    MatRef::from_column_major_slice(series, harmonics.slots(), modes.contacts())
+}
+
 /// Modal forces of the slip loads of all contacts.
 fn excite(modes: &dyn ContactCoordinates, harmonics: &Harmonics, slip_load: &[f64]) -> Mat<f64> {
-    let (slots, contacts) = (harmonics.slots(), modes.contacts());
-    let slip_load = MatRef::from_column_major_slice(slip_load, slots, contacts);
-    modes.excite(slip_load)
+    modes.excite(series_matrix(modes, harmonics, slip_load))
 }
 
 /// Adds the displacements of all contacts by modal coordinates.
 fn add_motion(modes: &dyn ContactCoordinates, coordinates: &Mat<f64>, out: &mut [f64]) {
-    let motion = modes.displace(coordinates.as_ref());
-    let entries = motion.col_iter().flat_map(|column| column.iter().copied());
+    add_series(&modes.displace(coordinates.as_ref()), out);
+}
+
+/// Adds series of all contacts.
+fn add_series(motion: &Mat<f64>, out: &mut [f64]) {
+    let entries = motion.col_iter().flat_map(|column| column.iter());
     out.iter_mut().zip(entries).for_each(|(out, u)| *out += u);
 }
 

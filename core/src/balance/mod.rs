@@ -33,6 +33,7 @@ mod sweep;
 
 mod resolution_control;
 mod rough_start;
+mod rounded_tangents;
 mod sampling;
 mod scale;
 mod settings;

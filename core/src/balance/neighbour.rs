@@ -10,6 +10,7 @@
 use super::smooth_piece::{Estimated, SmoothPiece};
 use super::solution::Point;
 use super::unknowns::Unknowns;
+use crate::contact::Repeated;
 
 /// Points are beside one another up to this distance in frequency, relative to it.
 const NEAR: f64 = 0.02;
@@ -29,6 +30,8 @@ pub(super) struct Neighbour {
     /// The last frequency with a slipping contact, and what the solutions so far allow the estimates after it,
     /// in reckoned nanoseconds.
     account: Option<(f64, f64)>,
+    /// States that marches of the contacts have repeated: those at the next point begin with them.
+    pub(super) states: Vec<Option<Repeated>>,
     pub(super) piece: SmoothPiece,
 }
 

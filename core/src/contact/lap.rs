@@ -16,6 +16,9 @@ pub struct Lap<'a> {
     pub forces: &'a mut [f64],
     /// State that the lap before has ended with, and then this one, mirrored.
     pub end: &'a mut [f64],
+    /// Derivative of what the lap ends with in what it begins with, row by row; of the lap before, if that was
+    /// met.
+    pub by: &'a mut [f64],
     /// The last step in which the force has departed from the stuck spring's.
     pub departure: Option<usize>,
     /// Largest number of the state.

@@ -1,6 +1,6 @@
 //! GMRES for linear systems whose matrix is known by its products alone (Saad and Schultz 1986).
 
-use super::norm;
+use super::{dot, norm};
 
 /// Directions after which the basis is begun anew.
 const LONGEST_BASIS: usize = 80;
@@ -113,14 +113,8 @@ impl Basis {
     fn include(&mut self, mut image: Vec<f64>) -> bool {
         let before = norm(&image);
         let mut column = vec![0.0; self.vectors.len()];
-        // Twice is enough (Kahan and Parlett).
-        for _ in 0..2 {
-            for (entry, vector) in column.iter_mut().zip(&self.vectors) {
-                let share: f64 = vector.iter().zip(&image).map(|(v, w)| v * w).sum();
-                image.iter_mut().zip(vector).for_each(|(w, v)| *w -= share * v);
-                *entry += share;
-            }
-        }
+        let (vectors, shares) = (&self.vectors, &mut column);
+        pulp::Arch::new().dispatch(Orthogonalised { vectors, image: &mut image, shares });
         let rest = norm(&image);
         for (i, [cos, sin]) in self.rotations.iter().enumerate() {
             let (a, b) = (column[i], column[i + 1]);
@@ -172,6 +166,30 @@ impl Basis {
         residual.fill(0.0);
         for (share, vector) in left.iter().zip(&self.vectors) {
             residual.iter_mut().zip(vector).for_each(|(r, v)| *r += share * v);
+        }
+    }
+}
+
+/// Takes off an image what it shares with vectors. A closure would be no part of what vector instructions are
+/// chosen for.
+struct Orthogonalised<'a> {
+    vectors: &'a [Vec<f64>],
+    image: &'a mut [f64],
+    shares: &'a mut [f64],
+}
+
+impl pulp::NullaryFnOnce for Orthogonalised<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        // Twice is enough (Kahan and Parlett).
+        for _ in 0..2 {
+            for (entry, vector) in self.shares.iter_mut().zip(self.vectors) {
+                let share = dot(vector, self.image);
+                self.image.iter_mut().zip(vector).for_each(|(w, v)| *w -= share * v);
+                *entry += share;
+            }
         }
     }
 }

@@ -54,6 +54,13 @@ pub trait ContactCoordinates: Send + Sync {
     /// Turns forces into coordinates, `Z⁻¹ f`, to a relative tolerance where damping couples modes.
     fn answer(&self, at: &ModalOrders, forces: &mut Mat<f64>, tolerance: f64);
 
+    /// Displacements of all contacts by loads on them.
+    fn respond(&self, at: &ModalOrders, load: MatRef<'_, f64>, tolerance: f64) -> Mat<f64> {
+        let mut motion = self.excite(load);
+        self.answer(at, &mut motion, tolerance);
+        self.displace(motion.as_ref())
+    }
+
     /// Rate of change with ω of coordinates under fixed forces: `−Z⁻¹ dZ/dω y`.
     fn answer_rate(&self, at: &ModalOrders, coordinates: &mut Mat<f64>, tolerance: f64);
 

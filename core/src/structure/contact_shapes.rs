@@ -90,15 +90,29 @@ impl SparseRows {
 /// Modal forces of loads, `q Ψ`; `contacts` are Ψᵀ of the contacts that have some. Those without a load
 /// are passed over.
 pub(super) fn excite<T: RealField + Copy>(contacts: MatRef<'_, T>, load: MatRef<'_, T>) -> Mat<T> {
-    let (zero, one) = (T::zero_impl(), T::one_impl());
-    let loaded = |j: &usize| load.col(*j).iter().any(|q| *q != zero);
-    let loaded: Vec<usize> = (0..load.ncols()).filter(loaded).collect();
+    let loaded = loaded(load);
     // Tall columns, one behind the other, go through the processor twice as fast as rows.
     let mut forces = Mat::zeros(contacts.nrows(), load.nrows());
+    add_forces(contacts, load, &loaded, &mut forces);
+    forces.transpose().to_owned()
+}
+
+/// Contacts with a load.
+pub(super) fn loaded<T: RealField + Copy>(load: MatRef<'_, T>) -> Vec<usize> {
+    let zero = T::zero_impl();
+    (0..load.ncols()).filter(|&j| load.col(j).iter().any(|q| *q != zero)).collect()
+}
+
+/// Adds the modal forces of loads, modes × slots.
+pub(super) fn add_forces<T: RealField + Copy>(
+    contacts: MatRef<'_, T>,
+    load: MatRef<'_, T>,
+    loaded: &[usize],
+    forces: &mut Mat<T>,
+) {
+    let one = T::one_impl();
     if loaded.len() == load.ncols() {
-        let par = Par::Seq;
-        matmul(forces.as_mut(), Accum::Replace, contacts, load.transpose(), one, par);
-        return forces.transpose().to_owned();
+        return matmul(forces.as_mut(), Accum::Add, contacts, load.transpose(), one, Par::Seq);
     }
     let mut panel = Mat::zeros(contacts.nrows(), PANEL.min(loaded.len()));
     for own in loaded.chunks(PANEL) {
@@ -107,7 +121,6 @@ pub(super) fn excite<T: RealField + Copy>(contacts: MatRef<'_, T>, load: MatRef<
         let panel = panel.as_ref().subcols(0, own.len());
         matmul(forces.as_mut(), Accum::Add, panel, loads.as_ref(), one, Par::Seq);
     }
-    forces.transpose().to_owned()
 }
 
 /// Displacements of modal coordinates at contacts, `y Ψᵀ`.

@@ -2,7 +2,9 @@
 
 use super::contact_coordinates::ContactCoordinates;
 use super::contact_modes::ContactModes;
-use super::contact_shapes::{displace, excite, gather, ContactShapes};
+use super::contact_shapes::{
+    add_forces, displace, excite, gather, loaded, ContactShapes,
+};
 use super::modal_orders::{Inverse, ModalOrders, Order};
 use super::quasi_static::QuasiStatic;
 use crate::solve::{gmres, KrylovSettings};
@@ -16,6 +18,8 @@ use faer::{c64, Accum, Mat, MatRef, Par};
 const MOST_PRODUCTS: usize = 400;
 /// … which count as so many within one with the modes.
 const COUPLING: f64 = 4.0;
+/// Modes whose shapes at the contacts stay in the cache from one product to the next.
+const TOGETHER: usize = 128;
 /// Least modulus of a dynamic stiffness, relative to the squared frequency.
 const FLOOR: f64 = 1e-9;
 
@@ -178,6 +182,29 @@ impl ContactCoordinates for ContactModes {
             };
             *x = c64::new(part(slot), if harmonic == 0 { 0.0 } else { -part(slot + 1) });
         }
+    }
+
+    /// From modes to modes where nothing couples them: their shapes at the contacts, which have to come from
+    /// memory, serve for both products.
+    fn respond(&self, at: &ModalOrders, load: MatRef<'_, f64>, tolerance: f64) -> Mat<f64> {
+        let (slots, contacts) = load.shape();
+        if self.is_coupled() {
+            let mut motion = self.excite(load);
+            self.answer(at, &mut motion, tolerance);
+            return self.displace(motion.as_ref());
+        }
+        let loaded = loaded(load);
+        let mut out = Mat::zeros(slots, contacts);
+        for first in (0..self.modes()).step_by(TOGETHER) {
+            let shapes = self.shapes();
+            let shapes = shapes.subrows(first, TOGETHER.min(shapes.nrows() - first));
+            let mut forces = Mat::zeros(shapes.nrows(), slots);
+            add_forces(shapes, load, &loaded, &mut forces);
+            let mut motion = forces.transpose().to_owned();
+            at.divide_part(&mut motion, first);
+            matmul(out.as_mut(), Accum::Add, motion.as_ref(), shapes, 1.0, Par::Seq);
+        }
+        out
     }
 
     fn answer(&self, at: &ModalOrders, forces: &mut Mat<f64>, tolerance: f64) {

@@ -30,11 +30,12 @@ pub(super) enum Inverse {
 }
 
 impl Inverse {
-    /// What forces displace.
-    fn times(&self, forces: &mut Mat<c64>) {
+    /// What forces displace; on modes from the first one on, of a diagonal.
+    fn times(&self, forces: &mut Mat<c64>, first: usize) {
         match self {
             Self::Diagonal(inverse) => {
-                forces.col_as_slice_mut(0).iter_mut().zip(inverse).for_each(|(f, z)| *f *= *z);
+                let own = forces.col_as_slice_mut(0).iter_mut().zip(&inverse[first..]);
+                own.for_each(|(f, z)| *f *= *z);
             }
             Self::Factors(factors) => factors.solve_in_place(forces.as_mut()),
         }
@@ -44,6 +45,11 @@ impl Inverse {
 impl ModalOrders {
     /// Divides by Z, or by its diagonal.
     pub(super) fn divide(&self, forces: &mut Mat<f64>) {
+        self.divide_part(forces, 0);
+    }
+
+    /// The same of some modes, from the first of them on, where Z is diagonal.
+    pub(super) fn divide_part(&self, forces: &mut Mat<f64>, first: usize) {
         let mut own: Mat<c64> = Mat::zeros(forces.ncols(), 1);
         for Order { slot, rate, inverse, .. } in &self.orders {
             let mean = *rate == 0.0;
@@ -51,7 +57,7 @@ impl ModalOrders {
                 let sine = if mean { 0.0 } else { forces[(slot + 1, j)] };
                 *own = c64::new(forces[(*slot, j)], -sine);
             }
-            inverse.times(&mut own);
+            inverse.times(&mut own, first);
             for (j, own) in own.col_as_slice(0).iter().enumerate() {
                 forces[(*slot, j)] = own.re;
                 if !mean {

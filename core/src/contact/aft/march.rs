@@ -9,7 +9,6 @@ use super::samples::Samples;
 use crate::contact::periodic_march::SLOW;
 use crate::contact::return_map::ReturnMapJacobian;
 use crate::contact::{Aft, AssumedStart, ContactLaw, Motion, Residual, Unslipped};
-use faer::Mat;
 use std::ops::Deref;
 
 /// Rounds after which a march ends, repeated or not. An elastoplastic contact forgets its start with
@@ -159,22 +158,19 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
         let mut round = Round::new(samples, size);
         // A residual force that depends on the motion varies as slip does.
         round.slipped = departs(&step) || begun.moves(&step.jacobian);
-        let (mut at_once, mut last_change) = (false, f64::INFINITY);
+        let mut last_change = f64::INFINITY;
         let (mut pushes, mut jump): (usize, Option<(Vec<f64>, f64)>) = (0, None);
         loop {
-            let mut lap = (pushes >= PUSHES).then(|| LapDerivative::new(size));
+            let derived = pushes >= PUSHES;
             let before = step.state.clone();
-            if lap.is_none() && self.lap(samples, &before, PERIODIC, &mut round) {
-                (at_once, step.state) = (true, round.end.clone());
+            if self.lap(samples, &before, PERIODIC, &mut round) {
+                step.state.clone_from(&round.end);
             } else {
-                if std::mem::take(&mut at_once) {
-                    self.settle(samples, &mut step);
-                }
-                self.pass(samples, &mut step, lap.as_mut(), &mut round);
+                self.pass(samples, &mut step, derived, &mut round);
             }
             let largest = round.largest;
             let change = distance(&step.state, &before);
-            let slips = lap.as_ref().is_none_or(|lap| !is_identity(&lap.by, size));
+            let slips = !derived || round.moves;
             let small = |change: f64| change <= SMALL * largest;
             // A jump that was not small is confirmed by another one.
             let unsure = jump.take().filter(|(_, by)| !small(*by));
@@ -190,15 +186,14 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
             if periodic || round.restarts.len() == MOST_ROUNDS {
                 return round;
             }
-            let restart = match lap {
-                Some(lap) => {
-                    let mirrored = |i, j| samples.sign * lap.by[i * size + j];
-                    let restart = Restart::at_fixed_point(&Mat::from_fn(size, size, mirrored));
-                    jump = restart.is_some().then(|| (step.state.clone(), change));
-                    restart.unwrap_or(Restart::GoesOn)
-                }
-                None if samples.sign < 0.0 && change > SLOW * last_change => Restart::Mean,
-                None => Restart::GoesOn,
+            let restart = if derived {
+                let restart = round.fixed_point();
+                jump = restart.is_some().then(|| (step.state.clone(), change));
+                restart.unwrap_or(Restart::GoesOn)
+            } else if samples.sign < 0.0 && change > SLOW * last_change {
+                Restart::Mean
+            } else {
+                Restart::GoesOn
             };
             if !matches!(restart, Restart::GoesOn) {
                 restart.apply(&mut step.state, &before);
@@ -225,9 +220,10 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
         &self,
         samples: &Samples,
         step: &mut Step,
-        mut lap: Option<&mut LapDerivative>,
+        derived: bool,
         round: &mut Round,
     ) {
+        let mut lap = derived.then(|| LapDerivative::new(self.law.state_size()));
         let (count, size) = (self.law.displacements(), self.law.state_size());
         let departs = self.departs();
         (round.largest, round.departure) = (0.0, None);
@@ -251,6 +247,10 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
         step.state.iter_mut().for_each(|z| *z *= samples.sign);
         step.force.iter_mut().for_each(|f| *f *= samples.sign);
         round.end.clone_from(&step.state);
+        if let Some(lap) = lap {
+            round.moves = !is_identity(&lap.by, size);
+            round.by = scaled(&lap.by, samples.sign);
+        }
     }
 
     /// Gives a state at the first instant its force.

@@ -6,11 +6,10 @@
 
 use super::lap_derivative::LapDerivative;
 use super::rate::{is_elastic, Rate};
-use super::round::CONTRACTS;
+use super::restart::Restart;
 use super::samples::Samples;
 use crate::contact::{Aft, ContactLaw};
 use faer::linalg::matmul::matmul;
-use faer::linalg::solvers::DenseSolveCore as _;
 use faer::{Accum, Mat, MatMut, MatRef, Par};
 use std::ops::Deref;
 
@@ -19,7 +18,7 @@ const TOGETHER: usize = 32;
 
 impl<L: Deref<Target: ContactLaw>> Aft<L> {
     /// Adds the derivative of a march to a tangent from a state at the first instant that repeats; `false`
-    /// if what a march begins with is not soon forgotten.
+    /// if it depends on what the march begins with.
     pub(super) fn differentiate_repeated(
         &self,
         samples: &Samples,
@@ -59,11 +58,15 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
             }
         }
         products.sum_up(out);
-        if lap.by.iter().any(|by| by.abs() > CONTRACTS) {
-            return false;
+        let size = state.len();
+        let mirrored = |i, j| samples.sign * lap.by[i * size + j];
+        match Restart::at_fixed_point(&Mat::from_fn(size, size, mirrored)) {
+            Some(Restart::FixedPoint(inverse)) => {
+                products.begin_with(&inverse, rate.rows(), samples.sign, out);
+                true
+            }
+            _ => false,
         }
-        products.begin_with(&lap.by, rate.rows(), samples.sign, out);
-        true
     }
 }
 
@@ -129,11 +132,9 @@ impl Products {
     }
 
     /// Adds what follows from the derivative of the state that the round begins with.
-    fn begin_with(&self, through: &[f64], ended: &[f64], sign: f64, out: &mut [f64]) {
+    fn begin_with(&self, inverse: &Mat<f64>, ended: &[f64], sign: f64, out: &mut [f64]) {
         let Self { slots, states, .. } = *self;
         let size = self.rows.len() * slots;
-        let own = |i: usize, j: usize| f64::from(u8::from(i == j)) - sign * through[i * states + j];
-        let inverse = Mat::from_fn(states, states, own).partial_piv_lu().inverse();
         let mut begun = vec![0.0; size];
         for k in 0..states {
             begun.fill(0.0);
@@ -148,6 +149,112 @@ impl Products {
                     row.iter_mut().zip(&begun).for_each(|(entry, by)| *entry += sum * by);
                 }
             }
+        }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::super::samples::Samples;
+    use crate::contact::{Aft, Closure, ContactLaw, Coulomb, HarmonicForce as _, Motion};
+    use crate::contact::{Residual, SlipLoad};
+    use crate::fourier::{Harmonics, SampleTable};
+
+    fn random(seed: usize) -> f64 {
+        let x = (seed as f64 * 12.9898 + 4.1).sin() * 43758.5453;
+        x - x.floor() - 0.5
+    }
+
+    fn largest(values: &[f64]) -> f64 {
+        values.iter().fold(1e-300, |most, x| most.max(x.abs()))
+    }
+
+    fn assert_close(found: &[f64], expected: &[f64], tolerance: f64, case: usize) {
+        assert_eq!(found.len(), expected.len());
+        let size = largest(expected);
+        for (found, expected) in found.iter().zip(expected) {
+            let error = (found - expected).abs() / size;
+            assert!(error < tolerance, "{case}: {found} {expected} of {size}: {error:.1e}");
+        }
+    }
+
+    /// One round tells the tangent that the whole march has, and a march that begins with the state of another
+    /// motion ends with the same slip load, tangent and all.
+    #[test]
+    fn what_slips_depends_neither_on_the_start_nor_on_the_rounds() {
+        let [mut slipped, mut resumed] = [0, 0];
+        for case in 0..240 {
+            let half_wave = case % 4 == 3;
+            let table = SampleTable::new(Harmonics::new(3, half_wave));
+            let slots = table.harmonics().slots();
+            let directions = 1 + case % 2;
+            let normal = (!half_wave && case % 3 > 0).then_some(200.0);
+            let law = Coulomb::new(directions, 0.4, 150.0, normal, Closure::Preload(20.0)).unwrap();
+            let size = 0.02 * (1.0 + (case % 12) as f64);
+            let series = |shift: f64| -> Vec<f64> {
+                (0..law.displacements() * slots)
+                    .map(|i| {
+                        let own = random(case * 97 + i) + shift * random(case * 31 + i + 5);
+                        size * own / (1.0 + (i % slots) as f64)
+                    })
+                    .collect()
+            };
+            let aft = Aft::new(Box::new(law), 128).unwrap();
+            let residual = Residual::Centred;
+            let [here, beside] = [series(0.0), series(0.05)];
+            let [here, beside] = [&here, &beside]
+                .map(|displacement| Motion { table: &table, displacement, residual });
+            // The march from its own begin, with the derivative of all of it.
+            let samples = Samples::of(here, 128);
+            let begun = aft.begin(here);
+            let round = aft.march(&samples, &begun);
+            let mut cold = SlipLoad::default();
+            aft.slip_load(here, true, &mut cold);
+            if !cold.active || round.departure.is_none() {
+                assert!(cold.repeated.is_none());
+                continue;
+            }
+            slipped += 1;
+            let mut whole = vec![0.0; cold.value.len().pow(2)];
+            aft.differentiate(&samples, &begun, &round.restarts, slots, &mut whole);
+            let mut carried = SlipLoad { tangent: whole, ..cold.clone() };
+            if table.harmonics().has_mean() {
+                carried.value.iter_mut().step_by(slots).for_each(|mean| *mean *= 2.0);
+                carried.halve_means(table.harmonics());
+            }
+            assert_close(&cold.tangent, &carried.tangent, 1e-7, case);
+            let mut warm = SlipLoad::default();
+            aft.slip_load(beside, true, &mut warm);
+            if warm.repeated.is_none() || cold.repeated.is_none() {
+                continue;
+            }
+            let known = warm.repeated.clone().unwrap();
+            resumed += usize::from(aft.resume(&samples, &known).is_some());
+            aft.slip_load(here, true, &mut warm);
+            assert_close(&warm.value, &cold.value, 1e-10, case);
+            assert_close(&warm.tangent, &cold.tangent, 1e-7, case);
+        }
+        assert!(slipped > 120 && resumed > 100, "{slipped} {resumed}");
+    }
+
+    /// A state that slip has left does not stay with a motion that sticks: the start decides.
+    #[test]
+    fn what_sticks_is_marched_from_its_start() {
+        let table = SampleTable::new(Harmonics::new(1, false));
+        let law = Coulomb::new(2, 0.4, 150.0, Some(200.0), Closure::Preload(20.0)).unwrap();
+        let aft = Aft::new(Box::new(law), 128).unwrap();
+        let mut load = SlipLoad::default();
+        for size in [0.1, 0.01] {
+            let displacement: Vec<f64> =
+                [0.3, 1.0, 0.0, 0.1, 0.2, 0.5, 0.0, 0.2, 0.1].map(|u: f64| size * u).to_vec();
+            let residual = Residual::Centred;
+            let motion = Motion { table: &table, displacement: &displacement, residual };
+            aft.slip_load(motion, true, &mut load);
+            let mut fresh = SlipLoad::default();
+            aft.slip_load(motion, true, &mut fresh);
+            assert_eq!(load.repeated.is_some(), size > 0.05);
+            assert_close(&load.value, &fresh.value, 1e-12, 0);
         }
     }
 }

@@ -72,7 +72,7 @@ mod tests {
         let law = Coulomb::new(2, 1.0, 1.0, None, Closure::Preload(1.0)).unwrap();
         let aft = Aft::new(Box::new(law), 128).unwrap();
         let samples = Samples::of(motion, 128);
-        let round = aft.march(&samples, &aft.begin(motion), false);
+        let round = aft.march(&samples, &aft.begin(motion));
         // Marched from period to period it takes some 700.
         assert!(round.restarts.len() < 20, "{}", round.restarts.len());
         let sideways = round.state[1];

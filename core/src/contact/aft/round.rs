@@ -5,13 +5,18 @@ use super::rate::FrictionWork;
 use super::restart::Restart;
 use super::samples::Samples;
 use crate::contact::{Aft, ContactLaw, Element, Lap, Repeated, SlipLoad};
+use faer::Mat;
 use std::ops::Deref;
 
 /// Rounds that a state from beside takes to repeat itself.
-const MOST_ROUNDS: usize = 4;
-/// Share of a change of the state that slip leaves of it in a round, at most, where the state does not depend
-/// on what a march begins with.
-pub(super) const CONTRACTS: f64 = 0.1;
+const MOST_ROUNDS: usize = 6;
+/// Part of a change that counts as none which the distance of two rounds that have met may be: what slip
+/// forgets slowly is many times as far from where it ends as it changes.
+const MET: f64 = 1e-2;
+/// Change of a state over a round, relative to the largest number, that is rounding.
+const ROUNDING: f64 = 1e-15;
+/// Share of the change over one round that the next one may have.
+const FALLS: f64 = 0.5;
 
 /// One round of states that repeat.
 pub(super) struct Round {
@@ -20,6 +25,8 @@ pub(super) struct Round {
     pub(super) force: Vec<f64>,
     /// State that it ends with, mirrored under half-wave symmetry.
     pub(super) end: Vec<f64>,
+    /// Derivative of that in what it begins with, row by row, of a law that takes rounds at once.
+    pub(super) by: Vec<f64>,
     /// The last step in which the force may have departed from the stuck spring's, if there is one.
     pub(super) departure: Option<usize>,
     /// Largest number of the state.
@@ -28,6 +35,8 @@ pub(super) struct Round {
     pub(super) restarts: Vec<Restart>,
     /// Whether the force has ever departed from the stuck spring's, by slip or otherwise.
     pub(super) slipped: bool,
+    /// Whether it changes what it begins with otherwise than a spring does.
+    pub(super) moves: bool,
     /// Whether its law takes rounds at once.
     pub(super) at_once: bool,
 }
@@ -39,12 +48,20 @@ impl Round {
             state: vec![f64::NAN; samples.count * size],
             force: vec![0.0; samples.displacement.len()],
             end: vec![f64::NAN; size],
+            by: vec![0.0; size * size],
             departure: None,
             largest: 0.0,
             restarts: vec![Restart::GoesOn],
             slipped: false,
+            moves: false,
             at_once: false,
         }
+    }
+
+    /// Where the linearised round would end.
+    pub(super) fn fixed_point(&self) -> Option<Restart> {
+        let size = self.end.len();
+        Restart::at_fixed_point(&Mat::from_fn(size, size, |i, j| self.by[i * size + j]))
     }
 }
 
@@ -64,21 +81,22 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
             states: &mut round.state,
             forces: &mut round.force,
             end: &mut round.end,
+            by: &mut round.by,
             departure: round.departure,
             largest: round.largest,
-            within,
+            within: MET * within,
         };
         if !self.law.lap(&mut lap) {
             return false;
         }
         (round.departure, round.largest) = (lap.departure, lap.largest);
-        round.at_once = true;
+        (round.at_once, round.moves) = (true, round.departure.is_some());
         round.slipped |= round.departure.is_some();
         true
     }
 
-    /// Marches from a state that a motion beside has repeated. Nothing where it does not slip, or where rounds
-    /// do not soon forget what they have begun with: the march then depends on its own begin.
+    /// Marches from a state that a motion beside has repeated, by Newton's method to one that this motion
+    /// repeats. Nothing where it does not slip: what it repeats then depends on the begin of the march.
     pub(super) fn resume(&self, samples: &Samples, from: &Repeated) -> Option<Round> {
         let mut round = Round::new(samples, self.law.state_size());
         let (mut state, mut last_change) = (from.state.clone(), f64::INFINITY);
@@ -86,14 +104,20 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
             if state.len() != round.end.len() || !self.lap(samples, &state, from.within, &mut round) {
                 return None;
             }
+            let fixed_point = round.fixed_point().filter(|_| round.departure.is_some())?;
             let change = distance(&round.end, &state);
-            if change <= from.within * round.largest {
-                return round.departure.is_some().then_some(round);
+            let before = state;
+            state = round.end.clone();
+            fixed_point.apply(&mut state, &before);
+            let repeats = change <= ROUNDING * round.largest
+                || distance(&state, &before) <= from.within * round.largest;
+            if repeats {
+                return Some(round);
             }
-            if change > CONTRACTS * last_change {
+            if change > FALLS * last_change {
                 return None;
             }
-            (last_change, state) = (change, round.end.clone());
+            last_change = change;
         }
         None
     }

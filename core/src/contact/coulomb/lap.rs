@@ -3,6 +3,7 @@
 //! The slider is swept by the cone, a convex set that moves with the motion: two sliders never come farther
 //! from one another (Moreau 1977), and slip brings them together.
 
+use super::dual::{Dual, Real};
 use super::law::{squared, Coulomb};
 use crate::contact::lap::Lap;
 
@@ -27,6 +28,9 @@ impl Coulomb {
         let mut state: [f64; D] = std::array::from_fn(|i| lap.state[i]);
         let mut u = at(0);
         let mut from = self.pressing(&u);
+        let mut by: [[f64; D]; D] = std::array::from_fn(|i| {
+            std::array::from_fn(|j| if i == j { lap.sign } else { 0.0 })
+        });
         let (mut departure, mut met) = (None, false);
         for n in 0..count {
             if lap.meets(n, &state) {
@@ -50,12 +54,17 @@ impl Coulomb {
             let traction = if sticks {
                 trial
             } else {
-                let passage = self.step(self.pair(|i| state[i]), du, from, to);
+                let begun = self.pair(|i| Dual::<2>::variable(state[i], i));
+                let passage = self.step(begun, du.map(Dual::from), from.into(), to.into());
                 // Slip that begins with the end of the step is none.
                 if !(from > 0.0 && passage.open == 0.0 && passage.slipping == 0.0) {
                     departure = Some(n);
                 }
-                passage.traction
+                by = std::array::from_fn(|i| {
+                    let own = &passage.traction[i].slopes;
+                    std::array::from_fn(|j| (0..D).map(|k| own[k] * by[k][j]).sum())
+                });
+                passage.traction.map(Real::value)
             };
             (0..D).for_each(|i| state[i] = traction[i]);
             lap.largest = state.iter().fold(lap.largest, |most, t| most.max(t.abs()));
@@ -64,6 +73,118 @@ impl Coulomb {
         lap.departure = departure;
         if !met {
             lap.end.iter_mut().zip(state).for_each(|(end, t)| *end = lap.sign * t);
+            lap.by.iter_mut().zip(by.iter().flatten()).for_each(|(to, by)| *to = *by);
         }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::contact::{Closure, ContactLaw as _};
+
+    fn random(seed: usize) -> f64 {
+        let x = (seed as f64 * 12.9898 + 4.1).sin() * 43758.5453;
+        x - x.floor() - 0.5
+    }
+
+    const COUNT: usize = 40;
+
+    struct Arrays {
+        states: Vec<f64>,
+        forces: Vec<f64>,
+        end: Vec<f64>,
+        by: Vec<f64>,
+        departure: Option<usize>,
+        largest: f64,
+    }
+
+    fn lap(law: &Coulomb, displacement: &[f64], state: &[f64], arrays: &mut Arrays) {
+        let mut lap = Lap {
+            displacement,
+            sign: 1.0,
+            state,
+            states: &mut arrays.states,
+            forces: &mut arrays.forces,
+            end: &mut arrays.end,
+            by: &mut arrays.by,
+            departure: arrays.departure,
+            largest: arrays.largest,
+            within: 1e-13,
+        };
+        assert!(law.lap(&mut lap));
+        (arrays.departure, arrays.largest) = (lap.departure, lap.largest);
+    }
+
+    /// A lap takes the steps of the return map, says how its end follows its begin, and leaves the lap before
+    /// where it meets it.
+    #[test]
+    fn laps_are_steps_one_after_the_other() {
+        let mut departed = 0;
+        for case in 0..60 {
+            let directions = 1 + case % 2;
+            let normal = (case % 3 > 0).then_some(200.0);
+            let law = Coulomb::new(directions, 0.4, 150.0, normal, Closure::Preload(20.0)).unwrap();
+            let width = law.displacements();
+            let size = 0.02 * (1.0 + (case % 10) as f64);
+            let displacement: Vec<f64> = (0..COUNT * width)
+                .map(|i| {
+                    let angle = std::f64::consts::TAU * (i / width) as f64 / COUNT as f64;
+                    let phase = 7.0 * random(31 * case + i % width);
+                    size * ((angle + phase).cos() + 0.5 * (2.0 * angle - phase).cos())
+                })
+                .collect();
+            let fresh = || Arrays {
+                states: vec![f64::NAN; COUNT * directions],
+                forces: vec![0.0; COUNT * width],
+                end: vec![0.0; directions],
+                by: vec![0.0; directions * directions],
+                departure: None,
+                largest: 0.0,
+            };
+            let begun: Vec<f64> = (0..directions).map(|i| random(case + 3 * i)).collect();
+            let mut arrays = fresh();
+            lap(&law, &displacement, &begun, &mut arrays);
+            let (mut state, mut force) = (begun.clone(), vec![0.0; width]);
+            for n in 0..COUNT {
+                let at = |n: usize| &displacement[(n % COUNT) * width..][..width];
+                assert_eq!(arrays.states[n * directions..][..directions], state, "{case} {n}");
+                if n > 0 {
+                    assert_eq!(arrays.forces[n * width..][..width], force, "{case} {n}");
+                }
+                law.return_map(at(n), at(n + 1), &mut state, &mut force, None);
+            }
+            assert_eq!(arrays.end, state);
+            departed += usize::from(arrays.departure.is_some());
+            let step = 1e-6;
+            for j in 0..directions {
+                let ends = [step, -step].map(|by| {
+                    let mut moved = begun.clone();
+                    moved[j] += by;
+                    let mut arrays = fresh();
+                    lap(&law, &displacement, &moved, &mut arrays);
+                    arrays.end
+                });
+                for i in 0..directions {
+                    let slope = (ends[0][i] - ends[1][i]) / (2.0 * step);
+                    let own = arrays.by[i * directions + j];
+                    assert!((slope - own).abs() < 1e-5, "{case}: {slope} {own}");
+                }
+            }
+            // The same lap again is met at once, another one where slip has brought both together.
+            let known = arrays.states.clone();
+            lap(&law, &displacement, &begun, &mut arrays);
+            assert_eq!((&arrays.states, &arrays.end), (&known, &state));
+            let other: Vec<f64> = begun.iter().map(|t| 0.5 * t).collect();
+            let mut alone = fresh();
+            lap(&law, &displacement, &other, &mut alone);
+            lap(&law, &displacement, &other, &mut arrays);
+            assert_eq!(arrays.departure, alone.departure, "{case}");
+            for (met, own) in arrays.end.iter().zip(&alone.end) {
+                assert!((met - own).abs() <= 1e-12 * alone.largest, "{case}");
+            }
+        }
+        assert!(departed > 40, "{departed}");
     }
 }
