@@ -73,7 +73,7 @@ impl<'a> Condensed<'a> {
             linear: Linear::new(model.compliance(), table, slopes),
             slopes,
             fine: slopes,
-            loads: vec![SlipLoad::default(); model.laws().len()],
+            loads: vec![SlipLoad::sparing(); model.laws().len()],
             values: vec![SlipLoad::default(); model.laws().len()],
             model,
             table,

@@ -103,7 +103,7 @@ mod tests {
                 value: vec![0.0; size],
                 tangent: (0..size * size).map(|i| unit * number(i + size)).collect(),
                 active,
-                repeated: None,
+                ..SlipLoad::default()
             };
             let loads = [load(33, true), load(7, false), load(11, true)];
             let points = [0..3, 3..4, 4..5];

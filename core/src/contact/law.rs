@@ -35,12 +35,20 @@ pub struct SlipLoad {
     /// Whether the tangent differs from zero: a contact that sticks for good is a linear spring
     /// and drops out of the Newton system.
     pub active: bool,
+    /// Whether a march gives a tangent of zeros no room: those of thousands of contacts that stick take more time
+    /// than all else.
+    pub spares_zeros: bool,
     /// The state that a march has repeated, if it is the same whatever the march begins with; the next one
     /// begins with it.
     pub repeated: Option<Repeated>,
 }
 
 impl SlipLoad {
+    /// None yet, whose tangents of zeros take no room.
+    pub(crate) fn sparing() -> Self {
+        Self { spares_zeros: true, ..Self::default() }
+    }
+
     pub(crate) fn reset(&mut self, size: usize, tangent: bool) {
         self.value.clear();
         self.value.resize(size, 0.0);

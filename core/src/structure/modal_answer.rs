@@ -2,9 +2,7 @@
 
 use super::contact_coordinates::ContactCoordinates;
 use super::contact_modes::ContactModes;
-use super::contact_shapes::{
-    add_forces, displace, excite, gather, loaded, ContactShapes,
-};
+use super::contact_shapes::{add_forces, displace, excite, gather, loaded, ContactShapes};
 use super::modal_orders::{Inverse, ModalOrders, Order};
 use super::quasi_static::QuasiStatic;
 use crate::solve::{gmres, KrylovSettings};

@@ -59,8 +59,7 @@ impl<L: Deref<Target: ContactLaw>> HarmonicForce for Aft<L> {
         let harmonics = motion.table.harmonics();
         let (slots, count) = (harmonics.slots(), self.law.displacements());
         let known = out.repeated.take();
-        // A tangent of zeros is not worth its room.
-        out.reset(count * slots, tangent && self.is_sum());
+        out.reset(count * slots, tangent && (self.is_sum() || !out.spares_zeros));
         let mut own = SlipLoad::default();
         for part in self.parts() {
             part.slip_load(motion, tangent, &mut own);

@@ -216,13 +216,7 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
     }
 
     /// Takes a round step by step, with its derivative if it is asked for.
-    fn pass(
-        &self,
-        samples: &Samples,
-        step: &mut Step,
-        derived: bool,
-        round: &mut Round,
-    ) {
+    fn pass(&self, samples: &Samples, step: &mut Step, derived: bool, round: &mut Round) {
         let mut lap = derived.then(|| LapDerivative::new(self.law.state_size()));
         let (count, size) = (self.law.displacements(), self.law.state_size());
         let departs = self.departs();
@@ -310,7 +304,6 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
             }
         }
     }
-
 }
 
 pub(super) fn scaled(values: &[f64], factor: f64) -> Vec<f64> {

@@ -203,8 +203,11 @@ mod tests {
             let aft = Aft::new(Box::new(law), 128).unwrap();
             let residual = Residual::Centred;
             let [here, beside] = [series(0.0), series(0.05)];
-            let [here, beside] = [&here, &beside]
-                .map(|displacement| Motion { table: &table, displacement, residual });
+            let [here, beside] = [&here, &beside].map(|displacement| Motion {
+                table: &table,
+                displacement,
+                residual,
+            });
             // The march from its own begin, with the derivative of all of it.
             let samples = Samples::of(here, 128);
             let begun = aft.begin(here);
@@ -223,7 +226,8 @@ mod tests {
                 carried.value.iter_mut().step_by(slots).for_each(|mean| *mean *= 2.0);
                 carried.halve_means(table.harmonics());
             }
-            assert_close(&cold.tangent, &carried.tangent, 1e-7, case);
+            // A march that has jumped to a fixed point carries a derivative as exact as the jump was.
+            assert_close(&cold.tangent, &carried.tangent, 2e-6, case);
             let mut warm = SlipLoad::default();
             aft.slip_load(beside, true, &mut warm);
             if warm.repeated.is_none() || cold.repeated.is_none() {

@@ -101,7 +101,8 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
         let mut round = Round::new(samples, self.law.state_size());
         let (mut state, mut last_change) = (from.state.clone(), f64::INFINITY);
         for _ in 0..MOST_ROUNDS {
-            if state.len() != round.end.len() || !self.lap(samples, &state, from.within, &mut round) {
+            if state.len() != round.end.len() || !self.lap(samples, &state, from.within, &mut round)
+            {
                 return None;
             }
             let fixed_point = round.fixed_point().filter(|_| round.departure.is_some())?;
@@ -140,7 +141,7 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
             out.make_room(true);
             told = self.differentiate_repeated(samples, begun, slots, &mut out.tangent);
             if !told {
-                out.tangent.clear();
+                out.tangent.fill(0.0);
             }
         }
         if !told && resumed {

@@ -28,9 +28,8 @@ impl Coulomb {
         let mut state: [f64; D] = std::array::from_fn(|i| lap.state[i]);
         let mut u = at(0);
         let mut from = self.pressing(&u);
-        let mut by: [[f64; D]; D] = std::array::from_fn(|i| {
-            std::array::from_fn(|j| if i == j { lap.sign } else { 0.0 })
-        });
+        let mut by: [[f64; D]; D] =
+            std::array::from_fn(|i| std::array::from_fn(|j| if i == j { lap.sign } else { 0.0 }));
         let (mut departure, mut met) = (None, false);
         for n in 0..count {
             if lap.meets(n, &state) {
