@@ -13,7 +13,6 @@ mod disturbed_stretch;
 mod expansion;
 mod exponential;
 mod few_modes;
-mod few_states;
 mod flow;
 mod flow_event;
 mod flow_next;

@@ -5,8 +5,7 @@
 
 use super::contact_state::Springs;
 use super::damping::Damping;
-use super::exponential::{exponential, Driven, Function as _};
-use super::few_states::FewStates;
+use super::exponential::{exponential, Driven};
 use super::oscillator::Oscillator;
 use super::quadrature::Quadrature;
 use crate::solve::dot;
@@ -164,11 +163,8 @@ impl Equations {
 
     /// The same of any equations.
     fn whole_exponential(&self, duration: f64) -> Driven {
-        let matrix = self.matrix(duration);
-        if let Some(few) = FewStates::of(&matrix) {
-            return exponential(&few, few.squared(), |own| few.times(own)).driven();
-        }
         let power = |own: &Driven| Driven::new(self.rates_of(&own.rows, duration));
+        let matrix = self.matrix(duration);
         let square = power(&matrix);
         exponential(&matrix, square, power)
     }
