@@ -165,9 +165,9 @@ mod tests {
                     lap(&law, &displacement, &moved, &mut arrays);
                     arrays.end
                 });
-                for i in 0..directions {
-                    let slope = (ends[0][i] - ends[1][i]) / (2.0 * step);
-                    let own = arrays.by[i * directions + j];
+                let own = arrays.by.chunks_exact(directions).map(|row| row[j]);
+                for (own, (ahead, behind)) in own.zip(ends[0].iter().zip(&ends[1])) {
+                    let slope = (ahead - behind) / (2.0 * step);
                     assert!((slope - own).abs() < 1e-5, "{case}: {slope} {own}");
                 }
             }
