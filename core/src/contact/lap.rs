@@ -19,7 +19,10 @@ pub struct Lap<'a> {
     /// Derivative of what the lap ends with in what it begins with, row by row; of the lap before, if that was
     /// met.
     pub by: &'a mut [f64],
-    /// The last step in which the force has departed from the stuck spring's.
+    /// Whether the force has departed from the stuck spring's in a step.
+    pub departs: bool,
+    /// The last step in which it has done so by more than a touch, which may be one of rounding alone: a slider
+    /// that is only touched may lie elsewhere.
     pub departure: Option<usize>,
     /// Largest number of the state.
     pub largest: f64,

@@ -82,6 +82,7 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
             forces: &mut round.force,
             end: &mut round.end,
             by: &mut round.by,
+            departs: false,
             departure: round.departure,
             largest: round.largest,
             within: MET * within,
@@ -89,9 +90,10 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
         if !self.law.lap(&mut lap) {
             return false;
         }
+        let moves = lap.departs || lap.departure.is_some();
         (round.departure, round.largest) = (lap.departure, lap.largest);
-        (round.at_once, round.moves) = (true, round.departure.is_some());
-        round.slipped |= round.departure.is_some();
+        (round.at_once, round.moves) = (true, moves);
+        round.slipped |= moves;
         true
     }
 

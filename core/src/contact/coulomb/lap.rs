@@ -7,6 +7,9 @@ use super::dual::{Dual, Real};
 use super::law::{squared, Coulomb};
 use crate::contact::lap::Lap;
 
+/// Slip in a step, relative to the largest traction, that is a touch of the cone.
+const TOUCH: f64 = 1e-6;
+
 impl Coulomb {
     /// See [`crate::contact::ContactLaw::lap`].
     pub(super) fn straight_lap(&self, lap: &mut Lap<'_>) {
@@ -57,7 +60,12 @@ impl Coulomb {
                 let passage = self.step(begun, du.map(Dual::from), from.into(), to.into());
                 // Slip that begins with the end of the step is none.
                 if !(from > 0.0 && passage.open == 0.0 && passage.slipping == 0.0) {
-                    departure = Some(n);
+                    lap.departs = true;
+                    let moved = passage.traction.iter().zip(trial);
+                    let moved = moved.map(|(t, trial)| (t.value() - trial).abs());
+                    if passage.open > 0.0 || moved.fold(0.0, f64::max) > TOUCH * lap.largest {
+                        departure = Some(n);
+                    }
                 }
                 by = std::array::from_fn(|i| {
                     let own = &passage.traction[i].slopes;
@@ -108,6 +116,7 @@ mod tests {
             forces: &mut arrays.forces,
             end: &mut arrays.end,
             by: &mut arrays.by,
+            departs: false,
             departure: arrays.departure,
             largest: arrays.largest,
             within: 1e-13,
