@@ -235,13 +235,17 @@ def test_flat_damper_of_hardly_any_mass_is_a_structural_damper():
     damper = ss.StructuralDamper(["left.x", "right.x"], stiffness=series, slip_forces=[15.0, 10.0])
     structure = ss.join(dict(zip(("left", "right"), blades, strict=True)))
     one, other = (
-        ss.forced_response(model, [225.0], harmonics=9, stability=False)
+        ss.forced_response(model, [210.0, 215.0, 220.0, 225.0], harmonics=9, stability=False)
         for model in (body, ss.Model(structure, [damper], forces))
     )
-    assert one.converged.all()
-    assert other.slip_fraction(0).max() > 0.3
+    # A body that hardly any mass holds back is not solved at every frequency.
+    solved = one.converged
+    assert solved.sum() >= 3
+    assert other.converged.all()
+    assert other.slip_fraction(0)[solved].max(axis=-1).min() > 0.3
     # The balance leaves out harmonics of the body's own motion, which the law has condensed.
-    assert one.amplitude("left.x") == pytest.approx(other.amplitude("left.x"), rel=3e-3)
+    amplitude = other.amplitude("left.x")[solved]
+    assert one.amplitude("left.x")[solved] == pytest.approx(amplitude, rel=3e-3)
 
 
 def disk(sectors=24, **changes):

@@ -15,6 +15,9 @@ use std::ops::Deref;
 
 /// Outer products that are summed at once: a tangent is passed through once for all of them.
 const TOGETHER: usize = 32;
+/// Most of what a round begins with that it may leave. Where more is left, rounds come to rest slowly, and the state
+/// that they end with lies farther from the one that repeats.
+const FORGOTTEN: f64 = 0.5;
 
 impl<L: Deref<Target: ContactLaw>> Aft<L> {
     /// Adds the derivative of a march to a tangent from a state at the first instant that repeats; `false`
@@ -59,6 +62,10 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
         }
         products.sum_up(out);
         let size = state.len();
+        let left = |row: &[f64]| row.iter().map(|by| by.abs()).sum::<f64>();
+        if lap.by.chunks_exact(size).any(|row| left(row) > FORGOTTEN) {
+            return false;
+        }
         let mirrored = |i, j| samples.sign * lap.by[i * size + j];
         match Restart::at_fixed_point(&Mat::from_fn(size, size, mirrored)) {
             Some(Restart::FixedPoint(inverse)) => {
@@ -226,8 +233,7 @@ mod tests {
                 carried.value.iter_mut().step_by(slots).for_each(|mean| *mean *= 2.0);
                 carried.halve_means(table.harmonics());
             }
-            // A march that has jumped to a fixed point carries a derivative as exact as the jump was.
-            assert_close(&cold.tangent, &carried.tangent, 2e-6, case);
+            assert_close(&cold.tangent, &carried.tangent, 1e-7, case);
             let mut warm = SlipLoad::default();
             aft.slip_load(beside, true, &mut warm);
             if warm.repeated.is_none() || cold.repeated.is_none() {
@@ -239,7 +245,7 @@ mod tests {
             assert_close(&warm.value, &cold.value, 1e-10, case);
             assert_close(&warm.tangent, &cold.tangent, 1e-7, case);
         }
-        assert!(slipped > 120 && resumed > 100, "{slipped} {resumed}");
+        assert!(slipped > 80 && resumed > 60, "{slipped} {resumed}");
     }
 
     /// A state that slip has left does not stay with a motion that sticks: the start decides.
