@@ -73,7 +73,7 @@ fn assert_beginnings(
         (found, kept)
     };
     let whole = bits(&work(&|_| true).0.points);
-    ended_anywhere(work, 10, |(found, kept)| {
+    ended_anywhere(work, 20, |(found, kept)| {
         let got = bits(&found.points);
         let none = found.points[0].status == PointStatus::NotComputed;
         assert!(none || got == whole[..got.len()], "{} of {}", got.len(), whole.len());

@@ -33,6 +33,12 @@ pub(super) fn with_others(
         if other_end == CurveEnd::Range {
             others.reverse();
             (points, end) = (others, other_end);
+        } else if other_end == CurveEnd::Interrupted {
+            end = other_end;
+            // From the other end there might have been a point here.
+            if points.first().is_some_and(|first| !first.is_solved()) {
+                points = vec![Arc::new(balance.not_computed(from))];
+            }
         }
     }
     let mut cut = 0;
