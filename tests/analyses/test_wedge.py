@@ -234,13 +234,14 @@ def test_flat_damper_of_hardly_any_mass_is_a_structural_damper():
     series = 1e4 * np.array([[1.0, -1.0], [-1.0, 1.0]])
     damper = ss.StructuralDamper(["left.x", "right.x"], stiffness=series, slip_forces=[15.0, 10.0])
     structure = ss.join(dict(zip(("left", "right"), blades, strict=True)))
+    omega = np.linspace(210.0, 228.0, 10)
     one, other = (
-        ss.forced_response(model, [210.0, 215.0, 220.0, 225.0], harmonics=9, stability=False)
+        ss.forced_response(model, omega, harmonics=9, stability=False)
         for model in (body, ss.Model(structure, [damper], forces))
     )
-    # A body that hardly any mass holds back is not solved at every frequency.
+    # Of bodies that hardly any mass holds back a quarter of the points is not solved.
     solved = one.converged
-    assert solved.sum() >= 3
+    assert solved.sum() >= 6
     assert other.converged.all()
     assert other.slip_fraction(0)[solved].max(axis=-1).min() > 0.3
     # The balance leaves out harmonics of the body's own motion, which the law has condensed.

@@ -32,8 +32,8 @@ impl Deref for Evaluated<'_> {
     }
 }
 
-/// A model with its laws, or those without a form of their own, marched through every number of samples that has been asked for. All of
-/// them share one decomposition.
+/// A model with its laws, or those without a form of their own, marched through every number of samples
+/// that has been asked for. All of them share one decomposition.
 pub(super) struct Evaluations<'a> {
     model: Evaluated<'a>,
     laws: MarchedLaws,

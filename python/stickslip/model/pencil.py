@@ -1,4 +1,4 @@
-"""The symmetric eigenproblem of two matrices, deaf to no signal."""
+"""The symmetric eigenproblem of two matrices; Ctrl-C is heard meanwhile."""
 
 from __future__ import annotations
 

@@ -18,13 +18,16 @@ use crate::Error;
 const BESIDE: f64 = 0.1;
 
 impl Walk<'_, '_> {
-    /// Judges a point beside a turn across the way, if its error at its own frequency is above the tolerance.
+    /// Judges a point beside a turn across the way, if its error at its own frequency asks for more harmonics.
     pub(super) fn judge_beside(
         &mut self,
         curve: &mut ForcedCurve<'_>,
         point: &mut Point,
         resolution: Resolution,
     ) -> Result<(), Error> {
+        if self.balance.control.is_fixed() {
+            return Ok(());
+        }
         let error = self.error_of(point);
         if error <= self.balance.settings.tolerance {
             return Ok(());
@@ -35,7 +38,8 @@ impl Walk<'_, '_> {
         let before = self.points.iter().rev().nth(1);
         let before = before.and_then(|one| Some(curve.point(one.unknowns()?, one.omega)));
         let Some(before) = before else { return Ok(()) };
-        if to_turn([&before, &from, &to]) > BESIDE {
+        let beside = to_turn([&before, &from, &to]) <= BESIDE;
+        if !beside {
             return Ok(());
         }
         let way: Vec<f64> = to.iter().zip(&from).map(|(b, a)| b - a).collect();
