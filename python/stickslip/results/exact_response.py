@@ -34,7 +34,7 @@ from stickslip.results.energy import Energy, apparent_work
 from stickslip.results.events import KINDS, ContactStates, Events, states_of
 from stickslip.results.fields import Computed, column
 from stickslip.results.forced_response import ForcedResponse
-from stickslip.results.peaks import RIVAL, Peak, highest, of_orbits, without_bound
+from stickslip.results.peaks import RIVAL, Peak, highest, of_orbits
 from stickslip.results.periodic import key_of
 from stickslip.results.stability import FloquetStability, stability_of
 from stickslip.results.status import Status
@@ -255,8 +255,7 @@ class ExactResponse(FloquetStability, ForcedResponse):
         """
         key = key_of(dof, measure)
         if key not in self._peaks:
-            unbounded = without_bound(self, dof)
-            self._peaks[key] = unbounded or highest(self, dof, measure, of_orbits)
+            self._peaks[key] = highest(self, dof, measure, of_orbits)
         return self._peaks[key]
 
     def _peaks_of(self, dofs: Sequence[str], measure: Measure) -> list[Peak]:

@@ -132,9 +132,12 @@ class Peaks(Sweep):
 def highest(result: Peaks, dof: str, measure: Measure, refine: Refine) -> Peak:
     """Refine every local maximum that may be the highest, and return the highest.
 
-    Points that are not solved are passed over, and warned of where they lie beside the peak.
+    Points that are not solved are passed over, and warned of where they lie beside the peak. It is
+    infinite where nothing bounds the response.
     """
     omega, amplitude, gap = _curve(result, dof, measure)
+    if unbounded := _unbounded_peak(result, dof):
+        return unbounded
     best = int(amplitude.argmax())
     beside_gap = bool(gap[best])
     peak = (float(omega[best]), float(amplitude[best]))
@@ -149,10 +152,10 @@ def highest(result: Peaks, dof: str, measure: Measure, refine: Refine) -> Peak:
 
 def _of_branch(result: Peaks, dof: str, measure: Measure) -> Peak:
     """Return the highest point of a branch, unless nothing bounds the response on any."""
-    return without_bound(result, dof) or along(result, dof, measure)
+    return _unbounded_peak(result, dof) or along(result, dof, measure)
 
 
-def without_bound(result: Peaks, dof: str) -> Peak | None:
+def _unbounded_peak(result: Peaks, dof: str) -> Peak | None:
     """Return the peak of a degree of freedom that nothing bounds; None if something does."""
     omega = result._unbounded[result.model.structure.index(dof)]
     return None if omega is None else _without_bound(dof, omega)

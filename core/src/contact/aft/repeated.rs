@@ -7,7 +7,6 @@
 use super::lap_derivative::LapDerivative;
 use super::rate::{is_elastic, Rate};
 use super::restart::Restart;
-use super::round::forgets;
 use super::samples::Samples;
 use crate::contact::{Aft, ContactLaw};
 use faer::linalg::matmul::matmul;
@@ -60,9 +59,6 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
         }
         products.sum_up(out);
         let size = state.len();
-        if !forgets(&lap.by, size) {
-            return false;
-        }
         let mirrored = |i, j| samples.sign * lap.by[i * size + j];
         match Restart::at_fixed_point(&Mat::from_fn(size, size, mirrored)) {
             Some(Restart::FixedPoint(inverse)) => {
@@ -183,7 +179,27 @@ mod tests {
         }
     }
 
-    /// One round tells the tangent that the whole march has, and a march that begins with the state of another
+    /// The tangent of a march, by central differences.
+    fn differences(aft: &Aft<Box<dyn ContactLaw>>, motion: Motion<'_>, step: f64) -> Vec<f64> {
+        let size = motion.displacement.len();
+        let beside = |k: usize, by: f64| {
+            let mut displacement = motion.displacement.to_vec();
+            displacement[k] += by;
+            let mut load = SlipLoad::default();
+            aft.slip_load(Motion { displacement: &displacement, ..motion }, false, &mut load);
+            load.value
+        };
+        let mut tangent = vec![0.0; size * size];
+        for k in 0..size {
+            let ends = beside(k, step).into_iter().zip(beside(k, -step));
+            for (i, (after, before)) in ends.enumerate() {
+                tangent[i * size + k] = (after - before) / (2.0 * step);
+            }
+        }
+        tangent
+    }
+
+    /// One round tells the tangent, and a march that begins with the state of another
     /// motion ends with the same slip load, tangent and all.
     #[test]
     fn what_slips_depends_neither_on_the_start_nor_on_the_rounds() {
@@ -223,15 +239,11 @@ mod tests {
                 continue;
             }
             slipped += 1;
-            told += usize::from(cold.repeated.is_some());
-            let mut whole = vec![0.0; cold.value.len().pow(2)];
-            aft.differentiate(&samples, &begun, &round.restarts, slots, &mut whole);
-            let mut carried = SlipLoad { tangent: whole, ..cold.clone() };
-            if table.harmonics().has_mean() {
-                carried.value.iter_mut().step_by(slots).for_each(|mean| *mean *= 2.0);
-                carried.halve_means(table.harmonics());
+            if cold.repeated.is_some() {
+                told += 1;
+                // A derivative that is carried along all rounds is up to 6e-6 off these differences.
+                assert_close(&cold.tangent, &differences(&aft, here, 1e-7 * size), 1e-7, case);
             }
-            assert_close(&cold.tangent, &carried.tangent, 1e-7, case);
             let mut warm = SlipLoad::default();
             aft.slip_load(beside, true, &mut warm);
             if warm.repeated.is_none() || cold.repeated.is_none() {

@@ -17,9 +17,6 @@ const MET: f64 = 1e-2;
 const ROUNDING: f64 = 1e-15;
 /// Share of the change over one round that the next one may have.
 const FALLS: f64 = 0.5;
-/// Most of what a round begins with that it may leave. Where more is left, rounds come to rest slowly, and the state
-/// that they end with lies farther from the one that repeats.
-const FORGOTTEN: f64 = 0.5;
 
 /// One round of states that repeat.
 pub(super) struct Round {
@@ -118,7 +115,7 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
             let repeats = change <= ROUNDING * round.largest
                 || distance(&state, &before) <= from.within * round.largest;
             if repeats {
-                return Some(round).filter(|round| forgets(&round.by, round.end.len()));
+                return Some(round);
             }
             if change > FALLS * last_change {
                 return None;
@@ -140,8 +137,7 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
     ) -> bool {
         let (count, stiffness) = (self.law.displacements(), self.law.stiffness());
         let begun = &round.state[..self.law.state_size()];
-        let departs = round.at_once && round.departure.is_some();
-        let forgets = resumed || (departs && forgets(&round.by, begun.len()));
+        let forgets = resumed || (round.at_once && round.departure.is_some());
         let mut told = !tangent;
         if tangent && forgets {
             out.make_room(true);
@@ -191,12 +187,6 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
         }
         [slipping, work]
     }
-}
-
-/// Whether a round leaves little of the state that it begins with, by its derivative, row by row.
-pub(super) fn forgets(by: &[f64], size: usize) -> bool {
-    let left = |row: &[f64]| row.iter().map(|by| by.abs()).sum::<f64>();
-    by.chunks_exact(size.max(1)).all(|row| left(row) <= FORGOTTEN)
 }
 
 /// Largest difference of two states.
