@@ -15,9 +15,9 @@ use crate::Error;
 /// one that friction does not bound.
 const UNBOUNDED: f64 = 1e12;
 
-/// Residual, relative to the contact displacements, beyond which a motion is no solution whatever its last step
-/// was. Friction leaves 1e-11, rounding beside stops 1e9 times as stiff as the structure somewhat less than this.
-const UNBALANCED: f64 = 1e-8;
+/// Residual, relative to the contact displacements, over the tolerance of the last step beyond which a motion is no
+/// solution: 1e-8. Friction leaves 1e-11; rounding at stops 1e9 times as stiff as the structure leaves some 1e-9.
+const UNBALANCED: f64 = 1e3;
 
 /// Samples per period by which a motion is tried that exact integrals do not lead to.
 const BLURRED: usize = 512;
@@ -172,13 +172,13 @@ impl ForcedBalance<'_> {
     fn iterate(&mut self, equations: &mut Condensed<'_>, x: &mut [f64]) -> Report {
         let Method::Broyden(first) = self.settings.method else {
             let report = newton(equations, x, self.settings.newton);
-            return if_sound(report, x, equations);
+            return self.if_sound(report, x, equations);
         };
         let (report, effort) = broyden(equations, x, self.settings.newton, first);
         equations.profile.factorisations += effort.jacobians;
         self.profile.updates += effort.updates;
         self.profile.restarts += usize::from(effort.jacobians > 1);
-        if_sound(report, x, equations)
+        self.if_sound(report, x, equations)
     }
 
     /// Newton's method from the exact orbit, or from a motion that settles where laws have no events and
@@ -203,7 +203,7 @@ impl ForcedBalance<'_> {
         let points = amplitudes.chunks_exact(orders).zip(trial.chunks_exact_mut(harmonics.slots()));
         points.for_each(|(amplitudes, series)| harmonics.write_series(amplitudes, series));
         let again = newton(equations, &mut trial, self.settings.newton);
-        let again = if_sound(again, &trial, equations);
+        let again = self.if_sound(again, &trial, equations);
         report.iterations += again.iterations;
         if !has_failed(&again) {
             (report.outcome, report.residual) = (again.outcome, again.residual);
@@ -224,7 +224,7 @@ impl ForcedBalance<'_> {
             let mut along = x.clone();
             equations.choose(path);
             let followed = homotopy(equations, &mut along, self.settings.newton, budget);
-            let followed = if_sound(followed, &along, equations);
+            let followed = self.if_sound(followed, &along, equations);
             report.iterations += followed.iterations;
             if !has_failed(&followed) {
                 (report.outcome, report.residual) = (followed.outcome, followed.residual);
@@ -240,23 +240,23 @@ impl ForcedBalance<'_> {
         let mut residual = vec![0.0; equations.size()];
         equations.residual(x, &mut residual);
     }
-}
 
-/// The report of a solution, unless nothing bounds the motion, or the equations do not hold there.
-fn if_sound(report: Report, x: &[f64], equations: &Condensed<'_>) -> Report {
-    if report.outcome == Outcome::Converged && !is_balanced(&report) {
-        return Report { outcome: Outcome::Stalled, ..report };
+    /// The report of a solution, unless nothing bounds the motion, or the equations do not hold there.
+    fn if_sound(&self, report: Report, x: &[f64], equations: &Condensed<'_>) -> Report {
+        if report.outcome == Outcome::Converged && !self.is_balanced(&report) {
+            return Report { outcome: Outcome::Stalled, ..report };
+        }
+        if report.outcome == Outcome::Converged && !is_bounded(x, equations.stuck_response()) {
+            return Report { outcome: Outcome::Singular, ..report };
+        }
+        report
     }
-    if report.outcome == Outcome::Converged && !is_bounded(x, equations.stuck_response()) {
-        return Report { outcome: Outcome::Singular, ..report };
-    }
-    report
-}
 
-/// Whether the equations hold at a solution, however small the last step was that led to it: a force that jumps
-/// lets Newton's method step to and fro over the jump.
-pub(super) fn is_balanced(report: &Report) -> bool {
-    report.residual <= UNBALANCED
+    /// Whether the equations hold at a solution, however small the last step was that led to it: a force that
+    /// jumps lets Newton's method step to and fro over the jump.
+    pub(super) fn is_balanced(&self, report: &Report) -> bool {
+        report.residual <= UNBALANCED * self.settings.newton.tolerance
+    }
 }
 
 /// Whether a motion is small enough that rounding leaves the effect of the load in its digits.

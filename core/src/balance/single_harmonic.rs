@@ -5,7 +5,7 @@
 //! `sum_j m_ij X_j + k_i (a_i − i b_i) X_i/A_i = r_i` keeps them. As everywhere it is condensed
 //! onto the stuck structure: `U = U^stuck + G Q`, `Q_i = (k_i − K_i(|U_i|)) U_i`.
 
-use super::attempts::{is_balanced, is_bounded};
+use super::attempts::is_bounded;
 use super::condensed::Condensed;
 use super::evaluation::Evaluated;
 use super::forced::ForcedBalance;
@@ -73,7 +73,7 @@ fn solve(
     });
     let solved = |report: &Report| {
         let bounded = is_bounded(&x, equations.stuck_response());
-        report.outcome == Outcome::Converged && is_balanced(report) && bounded
+        report.outcome == Outcome::Converged && balance.is_balanced(report) && bounded
     };
     let Some(report) = report.filter(solved) else {
         // The same equations with homotopy at hand, or the word for why there is no solution.
