@@ -29,6 +29,8 @@ mod parallel;
 pub mod progress;
 pub mod solve;
 pub mod structure;
+#[cfg(test)]
+mod test_numbers;
 pub mod timing;
 
 pub use error::Error;

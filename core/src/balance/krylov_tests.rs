@@ -13,12 +13,12 @@ use crate::fourier::{Harmonics, SampleTable};
 use crate::model::{Contact, MarchedLaws, Model};
 use crate::solve::{newton, NewtonSettings, Outcome, Parametrised as _, System as _};
 use crate::structure::{HarmonicLoad, Structure};
+use crate::test_numbers;
 use faer::{c64, Mat};
 
 /// Numbers between 0 and 1 without a pattern.
 fn random(seed: usize) -> f64 {
-    let x = (seed as f64 * 12.9898 + 4.1).sin() * 43758.5453;
-    x - x.floor()
+    0.5 + test_numbers::random(seed)
 }
 
 #[derive(Debug, Clone, Copy)]

@@ -2,8 +2,7 @@
 //!
 //! Rough directions leave some thousandths of a residual in any case: half as many bytes come from memory.
 
-use super::slip_jacobian::Loads;
-use crate::contact::SlipLoad;
+use super::slip_jacobian::{largest, Loads};
 
 /// Sums of a scalar product that go through the processor side by side.
 const SIDE_BY_SIDE: usize = 16;
@@ -23,9 +22,9 @@ impl RoundedTangents {
         let sizes: Vec<usize> = active().map(|load| load.value.len()).collect();
         let mut rounded = Self { unit: 1.0, numbers: Vec::new(), sizes };
         rounded.numbers.reserve_exact(active().map(|load| load.tangent.len()).sum());
-        let largest = active().map(largest).fold(0.0, f64::max);
-        if largest > 0.0 && largest.is_finite() {
-            rounded.unit = largest;
+        let most = active().map(|load| largest(&load.tangent)).fold(0.0, f64::max);
+        if most > 0.0 && most.is_finite() {
+            rounded.unit = most;
         }
         let per = rounded.unit.recip();
         for load in active() {
@@ -36,20 +35,12 @@ impl RoundedTangents {
 
     /// `∂Q v` of these contacts.
     pub(super) fn times(&self, v: &[f64], out: &mut [f64]) {
-        let largest = v.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
-        let unit = if largest > 0.0 && largest.is_finite() { largest } else { 1.0 };
+        let most = largest(v);
+        let unit = if most > 0.0 && most.is_finite() { most } else { 1.0 };
         let per = unit.recip();
         let v: Vec<f32> = v.iter().map(|v| (v * per) as f32).collect();
         pulp::Arch::new().dispatch(Product { of: self, unit: unit * self.unit, v: &v, out });
     }
-}
-
-fn largest(load: &SlipLoad) -> f64 {
-    let mut most = [0.0_f64; SIDE_BY_SIDE];
-    for entries in load.tangent.chunks(SIDE_BY_SIDE) {
-        most.iter_mut().zip(entries).for_each(|(most, entry)| *most = most.max(entry.abs()));
-    }
-    most.into_iter().fold(0.0, f64::max)
 }
 
 /// A closure would be no part of what vector instructions are chosen for.
@@ -93,6 +84,7 @@ fn dot(a: &[f32], b: &[f32]) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::contact::SlipLoad;
 
     /// In any unit, also where squares would not be single numbers.
     #[test]

@@ -115,7 +115,7 @@ fn larger(most: f64, x: f64) -> f64 {
 }
 
 /// Largest modulus of numbers: in lanes, as it is asked of whole tangents.
-fn largest(numbers: &[f64]) -> f64 {
+pub(super) fn largest(numbers: &[f64]) -> f64 {
     let mut most = [0.0_f64; LANES];
     let mut rest = numbers.chunks_exact(LANES);
     for lanes in rest.by_ref() {

@@ -4,7 +4,7 @@
 use super::lap_derivative::{is_identity, LapDerivative};
 use super::rate::{follows, is_elastic, Rate};
 use super::restart::Restart;
-use super::round::{distance, Round};
+use super::round::{distance, Round, PERIODIC};
 use super::samples::Samples;
 use crate::contact::periodic_march::SLOW;
 use crate::contact::return_map::ReturnMapJacobian;
@@ -14,9 +14,8 @@ use std::ops::Deref;
 /// Rounds after which a march ends, repeated or not. An elastoplastic contact forgets its start with
 /// the first slip in either direction; several coupled points take some rounds more.
 const MOST_ROUNDS: usize = 200;
-/// Change of the state over a round, relative to the largest, that counts as none, …
-pub(super) const PERIODIC: f64 = 1e-13;
-/// … and that is small enough for the fixed point of the linearised round to be exact.
+/// Change of the state over a round, relative to the largest, that is small enough for the fixed point of the
+/// linearised round to be exact.
 const SMALL: f64 = 1e-7;
 /// Rounds after which slip is taken to recur, so that its fixed point is sought.
 const PUSHES: usize = 3;

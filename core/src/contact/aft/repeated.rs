@@ -160,11 +160,7 @@ mod tests {
     use crate::contact::{Aft, Closure, ContactLaw, Coulomb, HarmonicForce as _, Motion};
     use crate::contact::{Residual, SlipLoad};
     use crate::fourier::{Harmonics, SampleTable};
-
-    fn random(seed: usize) -> f64 {
-        let x = (seed as f64 * 12.9898 + 4.1).sin() * 43758.5453;
-        x - x.floor() - 0.5
-    }
+    use crate::test_numbers::random;
 
     fn largest(values: &[f64]) -> f64 {
         values.iter().fold(1e-300, |most, x| most.max(x.abs()))

@@ -1,6 +1,5 @@
 //! A round of a march, and what happens in it.
 
-use super::march::PERIODIC;
 use super::rate::FrictionWork;
 use super::restart::Restart;
 use super::samples::Samples;
@@ -8,6 +7,8 @@ use crate::contact::{Aft, ContactLaw, Element, Lap, Repeated, SlipLoad};
 use faer::Mat;
 use std::ops::Deref;
 
+/// Change of the state over a round, relative to the largest, that counts as none.
+pub(super) const PERIODIC: f64 = 1e-13;
 /// Rounds that a state from beside takes to repeat itself.
 const MOST_ROUNDS: usize = 6;
 /// Part of a change that counts as none which the distance of two rounds that have met may be: what slip

@@ -90,11 +90,7 @@ impl Coulomb {
 mod tests {
     use super::*;
     use crate::contact::{Closure, ContactLaw as _};
-
-    fn random(seed: usize) -> f64 {
-        let x = (seed as f64 * 12.9898 + 4.1).sin() * 43758.5453;
-        x - x.floor() - 0.5
-    }
+    use crate::test_numbers::random;
 
     const COUNT: usize = 40;
 

@@ -222,11 +222,7 @@ impl Coulomb {
 mod tests {
     use super::*;
     use crate::contact::Closure;
-
-    fn random(seed: usize) -> f64 {
-        let x = (seed as f64 * 12.9898 + 4.1).sin() * 43758.5453;
-        x - x.floor() - 0.5
-    }
+    use crate::test_numbers::random;
 
     /// A step of the spring is that of the return map, to the last digit and with one derivative for
     /// all; of any other nothing is taken.

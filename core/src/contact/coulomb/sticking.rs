@@ -93,11 +93,7 @@ mod tests {
     use super::*;
     use crate::contact::{Aft, Closure, HarmonicForce as _, Residual, SlipLoad};
     use crate::fourier::{Harmonics, SampleTable};
-
-    fn random(seed: usize) -> f64 {
-        let x = (seed as f64 * 12.9898 + 4.1).sin() * 43758.5453;
-        x - x.floor() - 0.5
-    }
+    use crate::test_numbers::random;
 
     /// What bounds say of a motion samples say as well, and they say it of every small one.
     #[test]
