@@ -223,6 +223,9 @@ def test_figures_of_blades(mistuned, tuned):
     ax = plot.blade_bars(mistuned, "damper", index=20, tuned=tuned)
     heights = [patch.get_height() for patch in ax.patches]
     assert heights == pytest.approx(mistuned.blade_amplitudes("damper")[20])
+    ax = plot.blade_bars(mistuned, "damper", index=20, omega_unit="rpm")
+    speed = 30.0 / np.pi * mistuned.omega[20] / mistuned.model.disk.engine_order
+    assert ax.get_title() == f"n = {speed:.5g} rpm"
     ax = mistuned.plot_blade_curves("damper", [3, 13], tuned=tuned, omega_unit="Hz", log=False)
     assert [line.get_label() for line in ax.lines] == ["blade 3", "blade 13", "tuned"]
     assert ax.lines[1].get_ydata() == pytest.approx(mistuned.amplitude("13.damper"))

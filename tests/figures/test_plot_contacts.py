@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 
 import stickslip as ss
 from stickslip import plot
+from stickslip.cli.drawing import Wanted
 from stickslip.plot.style import prefixed
 from stickslip.reference import snecma_beam
 
@@ -235,3 +236,12 @@ def test_titles_have_the_unit_that_is_asked_for(frf, ax, unit, symbol):
     axes = plot.contact_forces(frf, 0, index, omega_unit=unit)
     assert axes[0].get_title(loc="left") == f"jenkins, {said}"
     plt.close(axes[0].figure)
+
+
+def test_the_command_gives_titles_the_unit_of_its_axes(frf):
+    wanted = Wanted(dofs=["tip"], omega_unit="Hz", log=True, per_force=False, contact="0")
+    for picture, place in (("waveform", "f = "), ("loop", "jenkins at f = ")):
+        _, (panel,) = wanted.picture({picture: "31 Hz"}, [("beam", frf)])
+        one = panel(ax=Figure().add_subplot())
+        assert one.get_title().startswith(place)
+        assert " Hz" in one.get_title()
