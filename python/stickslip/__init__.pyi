@@ -109,9 +109,9 @@ from stickslip.results.speed_response import SpeedResponse as SpeedResponse
 from stickslip.results.static_response import StaticResponse
 from stickslip.results.store import load as load
 from stickslip.results.sweep import Sweep as Sweep
+from stickslip.results.synthesis import SynthesizedCycles as SynthesizedCycles
 from stickslip.results.synthesis import SynthesizedPeaks as SynthesizedPeaks
 from stickslip.results.synthesis import SynthesizedResponse as SynthesizedResponse
-from stickslip.results.synthesized_cycles import SynthesizedCycles as SynthesizedCycles
 from stickslip.results.transient import Transient as Transient
 from stickslip.results.uncertainty import Uncertainty as Uncertainty
 from stickslip.settings.quantities import Backbone as Backbone

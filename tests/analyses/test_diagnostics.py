@@ -11,8 +11,8 @@ import pytest
 from typer.testing import CliRunner
 
 import stickslip as ss
+from stickslip.analyses.doubts import uniqueness
 from stickslip.analyses.texts import TEXTS
-from stickslip.analyses.uniqueness import uniqueness
 from stickslip.cli import app
 from stickslip.reference import snecma_beam
 from stickslip.results.diagnostic import SEVERITIES, Severity, diagnostic, missed_tolerances

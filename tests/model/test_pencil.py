@@ -8,7 +8,7 @@ import pytest
 from scipy.linalg import eigh
 
 from stickslip.interruption import beside
-from stickslip.model.pencil import eigen_pencil
+from stickslip.model.damping import eigen_pencil
 
 
 @pytest.mark.parametrize("size", [20, 350])

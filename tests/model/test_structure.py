@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 import stickslip as ss
 from stickslip.errors import ModelError
 from stickslip.model.coupling import Coupling
-from stickslip.model.structure import ModalDamping, Rayleigh, Structure, join
+from stickslip.model.damping import ModalDamping, Rayleigh
+from stickslip.model.structure import Structure, join
 
 M = np.diag([2.0, 1.0, 4.0])
 K = np.array([[3.0, -1.0, 0.0], [-1.0, 2.0, -1.0], [0.0, -1.0, 5.0]])

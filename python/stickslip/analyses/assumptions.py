@@ -8,10 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from stickslip import _core
-from stickslip.analyses.doubts import doubts, structure_doubts
-from stickslip.analyses.rigid_contacts import rigid_contacts
+from stickslip.analyses.doubts import doubts, is_unique, rigid_contacts, structure_doubts
 from stickslip.analyses.texts import TEXTS, told
-from stickslip.analyses.uniqueness import is_unique
 from stickslip.checks import listed
 from stickslip.model import Coulomb, Model, StructuralDamper, natural_frequencies
 from stickslip.model.state import State

@@ -14,8 +14,8 @@ from stickslip.model import Model, natural_frequencies
 from stickslip.model.configurations import every_point
 from stickslip.results.campbell import Campbell, CampbellArrays
 from stickslip.results.fields import Float
-from stickslip.settings.campbell import CampbellKeys, CampbellSettings
 from stickslip.settings.settings import configured
+from stickslip.settings.speed import CampbellKeys, CampbellSettings
 
 
 @configured(CampbellKeys)

@@ -8,9 +8,9 @@ import numpy as np
 
 from stickslip import _core
 from stickslip.analyses.arguments import require_forced, require_held
+from stickslip.analyses.doubts import is_unique
 from stickslip.analyses.peak_assumptions import damper_assumptions
 from stickslip.analyses.run import Progress, Run, refusals
-from stickslip.analyses.uniqueness import is_unique
 from stickslip.analyses.variation import (
     local_stiffness,
     resonance_range,

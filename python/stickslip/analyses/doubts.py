@@ -1,16 +1,22 @@
-"""What of a model puts its motions in doubt: more than one solution, or a slip of sign or unit."""
+"""What of a model puts its motions in doubt.
+
+It leaves open whether there is one solution, looks like a slip of sign or unit, or has contacts so
+stiff that a motion with them may not be found.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 
 from stickslip.analyses.texts import told
-from stickslip.analyses.uniqueness import instability, uniqueness
+from stickslip.checks import listed
 from stickslip.damper.damper import LEFT, RIGHT
 from stickslip.disk.mistuned import MistunedDisk
-from stickslip.model import Coulomb, Model
-from stickslip.model.structure import ModalDamping
+from stickslip.model import Contact, Coulomb, Model
+from stickslip.model.damping import ModalDamping
+from stickslip.results.arrays import Arrays
 from stickslip.results.diagnostic import Diagnostic
+from stickslip.results.status import Status
 
 _ROUND, _DEGREES = 15.0, 5.0
 """Phases from the first on that are multiples of the second are taken for degrees."""
@@ -102,3 +108,72 @@ def _flat_faces(model: Model) -> Diagnostic | None:
         if least < angle < most:
             return told("angle-unit", contact=name, angle=angle)
     return None
+
+
+def uniqueness(model: Model) -> Diagnostic | None:
+    """Say that a solution need not be the only one, if contact laws or damping leave that open.
+
+    The passive structure with laws that are monotone operators has one steady motion.
+    """
+    open_laws = list(dict.fromkeys(model.problem.laws_not_monotone))
+    if open_laws:
+        return told("law-not-monotone", _laws=listed(open_laws))
+    damped = model.structure.is_damped
+    if damped is None:
+        return told("undamped-motion")
+    return None if damped else told("negative-damping")
+
+
+def instability(model: Model) -> Diagnostic | None:
+    """Say that the stiffness lets motions grow that nothing but contacts and inertia hold."""
+    dof = model.structure.unstable_dof
+    return None if dof is None else told("negative-stiffness", dof=dof)
+
+
+def is_unique(model: Model) -> bool:
+    """Tell whether the steady motion is known to be the only one, and stable."""
+    return uniqueness(model) is None and instability(model) is None
+
+
+RIGID = 1e5
+"""Stiffness of a contact, over that of the structure at its DOFs, up to which motions are found."""
+
+
+UNSOLVED = (
+    Status.STALLED,
+    Status.SAMPLES_LIMIT,
+    Status.HARMONICS_LIMIT,
+    Status.EFFORT_LIMIT,
+    Status.WORK_LIMIT,
+)
+"""How points end that nearly rigid contacts keep from their solution."""
+
+
+def rigid_contacts(model: Model, arrays: Arrays) -> Diagnostic | None:
+    """Name the contacts that are nearly rigid, where points are not solved to the tolerance."""
+    unsolved = int(np.isin(arrays.status, [status.code for status in UNSOLVED]).sum())
+    if not unsolved:
+        return None
+    ratios = {str(contact.name): _ratio(model, contact) for contact in model.contacts}
+    rigid = [name for name, ratio in ratios.items() if ratio > RIGID]
+    if not rigid:
+        return None
+    most = max(rigid, key=lambda name: ratios[name])
+    return told(
+        "rigid-contacts",
+        _names=listed(rigid),
+        contact=most,
+        ratio=ratios[most],
+        _limit=RIGID,
+        points=unsolved,
+        _are="point is" if unsolved == 1 else "points are",
+    )
+
+
+def _ratio(model: Model, contact: Contact) -> float:
+    """Return the largest stiffness of a contact over that of the softest DOF that it acts on."""
+    held = np.abs(model.structure.stiffness.diagonal())
+    places = [np.flatnonzero(row) for row in np.hstack(model.contact_rows(contact))]
+    beside = [held[place % held.size].min() if place.size else 0.0 for place in places]
+    own = contact.stuck_stiffness.diagonal()
+    return max((k / b for k, b in zip(own, beside, strict=True) if b > 0.0), default=0.0)

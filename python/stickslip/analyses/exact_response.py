@@ -5,10 +5,10 @@ from __future__ import annotations
 from stickslip import _core
 from stickslip.analyses.arguments import columns_of, observed_dofs, points_of, require_held
 from stickslip.analyses.assumptions import orbit_assumptions
+from stickslip.analyses.doubts import is_unique
 from stickslip.analyses.forced_response import forced_response
 from stickslip.analyses.free_flight import with_free_flight
 from stickslip.analyses.run import Progress, Run, refusals, share
-from stickslip.analyses.uniqueness import is_unique
 from stickslip.disk.wave_ring import moving
 from stickslip.errors import Interrupted, ModelError
 from stickslip.memory import require_memory

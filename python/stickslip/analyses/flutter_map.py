@@ -18,8 +18,7 @@ from numpy.typing import NDArray
 from stickslip.analyses.run import Progress, Run
 from stickslip.analyses.side_by_side import has_own_laws, in_turn
 from stickslip.analyses.texts import told
-from stickslip.analyses.wave_modes import WaveModes
-from stickslip.analyses.wave_stability import wave_cycles, wave_multiplier
+from stickslip.analyses.wave_stability import WaveModes, wave_cycles, wave_multiplier
 from stickslip.disk.aerodynamics import Aerodynamics
 from stickslip.disk.bladed_disk import BladedDisk
 from stickslip.disk.waves import AerodynamicWaves, aerodynamic_waves
@@ -27,7 +26,7 @@ from stickslip.errors import ModelError
 from stickslip.results.diagnostic import present
 from stickslip.results.flutter_map import STATES, FlutterArrays, FlutterMap
 from stickslip.results.nonlinear_modes import NonlinearModes
-from stickslip.settings.flutter import FlutterKeys, FlutterModeSettings, FlutterSettings
+from stickslip.settings.modes import FlutterKeys, FlutterModeSettings, FlutterSettings
 from stickslip.settings.settings import configured
 
 if TYPE_CHECKING:

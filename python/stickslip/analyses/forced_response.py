@@ -19,9 +19,9 @@ from stickslip.analyses.arguments import (
 )
 from stickslip.analyses.assumptions import arrays_of, balance_assumptions
 from stickslip.analyses.branch_assumptions import branch_assumptions
+from stickslip.analyses.doubts import is_unique
 from stickslip.analyses.free_flight import with_free_flight
 from stickslip.analyses.run import Progress, Run, refusals
-from stickslip.analyses.uniqueness import is_unique
 from stickslip.memory import require_memory
 from stickslip.model import Model
 from stickslip.results import ForcedResponse

@@ -13,7 +13,7 @@ from stickslip.analyses.texts import told
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.results.diagnostic import Diagnostic, missed_tolerances, present
-from stickslip.results.mode_arrays import ModeArrays
+from stickslip.results.mode_shapes import ModeArrays
 from stickslip.results.nonlinear_modes import NonlinearModes
 from stickslip.settings.modes import BackboneSettings, ModeKeys, ModeSettings
 from stickslip.settings.settings import configured

@@ -18,7 +18,7 @@ from stickslip.analyses.nonlinear_modes import nonlinear_modes
 from stickslip.analyses.optimal_damper import optimal_damper
 from stickslip.analyses.pattern_store import Row
 from stickslip.analyses.run import Run, refusals
-from stickslip.analyses.sample_store import Sample, SampleStore
+from stickslip.analyses.stores import Sample, SampleStore
 from stickslip.disk.bladed_disk import BladedDisk
 from stickslip.errors import ModelError
 from stickslip.model import Model

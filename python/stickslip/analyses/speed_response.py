@@ -11,7 +11,7 @@ from stickslip.analyses.campbell import model_at
 from stickslip.analyses.forced_response import begun_with
 from stickslip.analyses.run import Progress
 from stickslip.checks import brief
-from stickslip.disk.rotor import rotor_order
+from stickslip.disk.bladed_disk import rotor_order
 from stickslip.errors import Interrupted, ModelError
 from stickslip.model import Model
 from stickslip.results.fields import Complex, Float

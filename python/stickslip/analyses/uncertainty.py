@@ -14,7 +14,7 @@ from stickslip.analyses.fit_parameters import FitParameter
 from stickslip.analyses.pattern_store import Identity, digest
 from stickslip.analyses.run import Progress, Run
 from stickslip.analyses.sample_run import RESIDUAL, SampleRun, Samples, sample_columns
-from stickslip.analyses.sample_store import SampleStore
+from stickslip.analyses.stores import SampleStore
 from stickslip.analyses.texts import told
 from stickslip.checks import brief
 from stickslip.disk.bladed_disk import BladedDisk

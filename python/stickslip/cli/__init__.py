@@ -7,7 +7,6 @@ the program, 130 interrupted by Ctrl-C, 143 by SIGTERM, 129 by SIGHUP: 128 and t
 from importlib.metadata import entry_points
 
 from stickslip.cli import commands as commands  # which join the application
-from stickslip.cli import explore as explore
 from stickslip.cli.application import app, command
 
 __all__ = ["app"]

@@ -1,4 +1,4 @@
-"""The commands that take result files: show, plot, certify, report and export; and schema."""
+"""The commands that take result files: show, plot, certify, report and export; schema, explore."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from stickslip.interruption import Interruption
 
 if TYPE_CHECKING:
     from stickslip.results import ForcedResponse
+
 
 _file = partial(typer.Option, metavar="FILE")
 _omega = partial(typer.Option, metavar="OMEGA")
@@ -233,3 +234,53 @@ def export(
             target = out or file.with_name(f"{file.stem}{part}{suffix}")
             result.export(target, name)
             tell(f"export: {target}")
+
+
+_PORT = 8350
+_LAST_PORT = 65535
+
+
+@command(
+    "stickslip explore examples/snecma-beam/study.toml",
+    "stickslip explore study.toml --port 0 --no-browser",
+    note="Needs tornado, tomlkit and plotly: pip install 'stickslip\\[explore]'. Ctrl-C ends it.",
+)
+def explore(
+    study: Annotated[Path, typer.Argument(help="Study file.", metavar="STUDY.toml")],
+    port: Annotated[
+        int,
+        typer.Option(
+            help="Port on this machine; 0: any free one.", metavar="INTEGER", parser=integer
+        ),
+    ] = _PORT,
+    no_browser: Annotated[
+        bool, typer.Option("--no-browser", help="Open no browser; the address is printed.")
+    ] = False,
+) -> None:
+    """Open a study as a local page: sliders move its numbers, curves follow."""
+    if not 0 <= port <= _LAST_PORT:
+        raise ModelError(f"--port {port}: give a number from 0 to {_LAST_PORT}")
+    try:
+        import plotly  # noqa: F401
+        import tomlkit  # noqa: F401
+        import tornado  # noqa: F401
+    except ImportError as error:
+        raise ModelError(
+            f"explore: {error.name} is not installed; install it with pip install "
+            "'stickslip[explore]'"
+        ) from None
+    from stickslip.cli.console import tell
+    from stickslip.explore.draft import Draft
+    from stickslip.explore.server import serve
+
+    # refused before anything is opened
+    Draft(study)
+    try:
+        serve(
+            study,
+            port,
+            lambda address: tell(f"explorer: {address}  (Ctrl-C ends it)"),
+            browser=not no_browser,
+        )
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt("the explorer has ended") from None

@@ -18,7 +18,7 @@ from stickslip.disk.sector import Sector
 from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
 from stickslip.model.configurations import every_point, natural_frequencies
-from stickslip.model.model import AnyMatrix, PointRef, from_core
+from stickslip.model.model import AnyMatrix, Model, PointRef, from_core
 from stickslip.model.structure import Structure
 
 ALL_SECTORS = "mistuning = {deviation = 0.0} in [disk]"
@@ -216,3 +216,12 @@ class NodalDiameters:
 
     plot = Drawn("nodal_diameters")
     plot_safe = Drawn("safe")
+
+
+def rotor_order(model: Model) -> float:
+    """Return the frequency over the speed of the rotor: the engine order of a disk.
+
+    It is 0 where that is not known, as of a model that is no disk.
+    """
+    disk = model.disk if isinstance(model, MistunedDisk) else model
+    return disk.engine_order if isinstance(disk, BladedDisk) else 0

@@ -21,9 +21,9 @@ from stickslip.checks import (
 )
 from stickslip.errors import ModelError
 from stickslip.model.coupling import Coupling
-from stickslip.model.damping import makes_blocks
+from stickslip.model.damping import Rayleigh, makes_blocks
 from stickslip.model.matrix_units import MatrixUnits, Units
-from stickslip.model.structure import Rayleigh, Structure
+from stickslip.model.structure import Structure
 
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)

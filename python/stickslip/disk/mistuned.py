@@ -16,10 +16,10 @@ from stickslip.disk.coupling import MATRICES, Blocks, CyclicMatrices, assembled
 from stickslip.disk.sector import NEXT, Sector
 from stickslip.errors import ModelError
 from stickslip.model.contact import Contact
-from stickslip.model.damping import ModalDamping, Rayleigh, makes_blocks
+from stickslip.model.damping import DampingLaw, ModalDamping, Rayleigh, makes_blocks
 from stickslip.model.force import Force
 from stickslip.model.model import Model, from_core
-from stickslip.model.structure import DampingLaw, Structure
+from stickslip.model.structure import Structure
 from stickslip.units import without_units
 
 

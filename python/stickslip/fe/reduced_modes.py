@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from stickslip.checks import Matrix, unknown
 from stickslip.errors import ModelError
-from stickslip.model.pencil import eigen_pencil
+from stickslip.model.damping import eigen_pencil
 from stickslip.units import physical_number
 
 MASSLESS = 1e-12

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from scipy.sparse import csc_array
 
     from stickslip.results.dataset import Stored
-from stickslip.results.record import Record
+from stickslip.results.dataset import Record
 
 
 class Reduction:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from stickslip.checks import brief
 from stickslip.errors import ModelError
 from stickslip.interruption import beside
-from stickslip.model.pencil import eigen_pencil
+from stickslip.model.damping import eigen_pencil
 
 if TYPE_CHECKING:
     from scipy.sparse import csc_array

@@ -12,7 +12,8 @@ from stickslip.disk import BladedDisk
 from stickslip.errors import ModelError
 from stickslip.model import Model, natural_frequencies
 from stickslip.model.configurations import every_point
-from stickslip.model.structure import Rayleigh, Structure
+from stickslip.model.damping import Rayleigh
+from stickslip.model.structure import Structure
 from stickslip.results.result import Result
 from stickslip.views.tables import Row, Table, model_rows, tabulated
 

@@ -1,4 +1,6 @@
-"""The .full file of ANSYS, read by ansys-mapdl-reader in a process of its own.
+"""The .full and .mapping files of ANSYS.
+
+The first is read by ansys-mapdl-reader in a process of its own.
 
 Its compiled reader trusts the addresses in the file: a damaged one takes the process down, and
 another process is all it may take.
@@ -10,13 +12,16 @@ import importlib.util
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 
+from stickslip.checks import is_file
 from stickslip.errors import ModelError
-from stickslip.io.entries import Labelled, node_names, whole_matrix
-from stickslip.io.source import Key
+from stickslip.io.entries import Labelled, Sparse, node_names, whole_matrix
+from stickslip.io.numbers import whole_field
+from stickslip.io.source import Key, at_line, read_text
 
 _PATIENCE = 600
 """Seconds; the largest sound files take one or two minutes."""
@@ -76,3 +81,53 @@ def _labelled(read: dict[str, np.ndarray[tuple[int, ...], np.dtype[np.generic]]]
         raise ValueError("a diagonal entry is not positive; the file is damaged")
     names = node_names(dofs[free, 0], dofs[free, 1] + 1)
     return Labelled(matrix[free][:, free].tocoo(), names)
+
+
+_WAYS = {"UX": "1", "UY": "2", "UZ": "3", "ROTX": "4", "ROTY": "5", "ROTZ": "6"}
+_ENDINGS = (".mapping", ".MAPPING")
+
+
+def with_mapping(read: Callable[[Path], Sparse]) -> Callable[[Path], Labelled | Sparse]:
+    """Return a reader of matrices that names the rows if a .mapping lies beside the file."""
+
+    def reader(path: Path) -> Labelled | Sparse:
+        matrix = read(path)
+        beside = next((one for end in _ENDINGS if is_file(one := path.with_suffix(end))), None)
+        if beside is None:
+            return matrix
+        names = read_mapping(beside)
+        if matrix.shape[0] != len(names):
+            raise ValueError(f"{matrix.shape[0]} rows, but {beside.name} names {len(names)}")
+        return Labelled(matrix, names)
+
+    return reader
+
+
+def read_mapping(path: Path) -> tuple[str, ...]:
+    """Read the names of the rows, "node.direction"; other quantities keep the name of ANSYS.
+
+    References
+    ----------
+    ANSYS, Inc., "Mechanical APDL Command Reference", HBMAT, Mapping.
+    """
+    lines = read_text(path, ended=True).splitlines()
+    nodes: list[int] = []
+    ways: list[str] = []
+    for number, line in enumerate(lines[1:], 2):
+        with at_line(number, path.name):
+            row, node, quantity = _words(line)
+            if row != len(nodes) + 1:
+                raise ValueError(f"row {row} follows row {len(nodes)}")
+            nodes.append(node)
+            ways.append(_WAYS.get(quantity.upper(), quantity.upper()))
+    names = node_names(nodes, ways)
+    if not names or len(set(names)) < len(names):
+        raise ValueError(f"{path.name} names {'a row twice' if names else 'no row'}")
+    return names
+
+
+def _words(line: str) -> tuple[int, int, str]:
+    words = line.split()
+    if len(words) != 3 or not words[2].isalnum():
+        raise ValueError(f"row, node and quantity expected, found {line.strip()[:40]!r}")
+    return whole_field(words[0]), whole_field(words[1]), words[2]

@@ -21,12 +21,11 @@ from stickslip.checks import (
 )
 from stickslip.errors import ModelError
 from stickslip.io.abaqus import read_abaqus, read_calculix, read_calculix_dofs
-from stickslip.io.ansys import read_ansys
+from stickslip.io.ansys import read_ansys, read_mapping, with_mapping
 from stickslip.io.curve import read_table
 from stickslip.io.dmig import read_dmig
 from stickslip.io.entries import Labelled, require_size
 from stickslip.io.harwell_boeing import read_harwell_boeing
-from stickslip.io.mapping import read_mapping, with_mapping
 from stickslip.io.matlab import read_matlab
 from stickslip.io.matrix_market import read_matrix_market
 from stickslip.io.npz import read_numpy

@@ -9,13 +9,14 @@ from stickslip.model.configurations import (
 from stickslip.model.contact import Contact
 from stickslip.model.contact_law import ContactLaw, Tangents
 from stickslip.model.coulomb import Coulomb
+from stickslip.model.damping import ModalDamping, Rayleigh
 from stickslip.model.force import Force
 from stickslip.model.jenkins import Jenkins, ParallelJenkins
 from stickslip.model.microslip import BoucWen, Iwan, Masing
 from stickslip.model.model import ContactRef, Model, PointRef
 from stickslip.model.springs import Cubic, Stop
 from stickslip.model.structural import StructuralDamper
-from stickslip.model.structure import ModalDamping, Rayleigh, Structure, join
+from stickslip.model.structure import Structure, join
 
 __all__ = [
     "BoucWen",

@@ -12,8 +12,7 @@ from numpy.typing import ArrayLike
 
 from stickslip.checks import Matrix, brief, set_fields
 from stickslip.errors import ModelError
-from stickslip.model.bonded import Bonded
-from stickslip.model.contact import Contact
+from stickslip.model.contact import Bonded, Contact
 from stickslip.model.contact_answer import Answers, array_of, arrays_of, compare
 from stickslip.model.dofs import Dofs
 from stickslip.model.nodes import Displacement, Nodes

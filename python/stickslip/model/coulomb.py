@@ -19,12 +19,17 @@ from stickslip.checks import (
     whole_number,
 )
 from stickslip.errors import ModelError
-from stickslip.model.bonded import Bonded
-from stickslip.model.contact import OPEN, Contact
+from stickslip.model.contact import OPEN, Bonded, Contact
 from stickslip.model.dofs import Dofs
-from stickslip.model.node_values import Each, number_of_each, times_areas
+from stickslip.model.node_values import (
+    Each,
+    Vectors,
+    frame_of,
+    number_of_each,
+    times_areas,
+    unit_normals,
+)
 from stickslip.model.nodes import Displacement, Nodes
-from stickslip.model.normals import Vectors, frame_of, unit_normals
 
 _ENTRY = "coulomb contact"
 _OPTIONAL = ("normal_stiffness", "preload", "gap")

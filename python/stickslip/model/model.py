@@ -19,8 +19,9 @@ from stickslip.checks import Matrix, brief, members, real_number, set_fields, un
 from stickslip.errors import ModelError
 from stickslip.model.contact import Contact
 from stickslip.model.contact_law import ContactLaw
+from stickslip.model.damping import DampingLaw
 from stickslip.model.force import Force
-from stickslip.model.structure import DampingLaw, Structure
+from stickslip.model.structure import Structure
 
 if TYPE_CHECKING:
     from stickslip import _core

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from numbers import Real
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 from stickslip.checks import (
     Matrix,
     MatrixLike,
+    as_list,
     brief,
     members,
     real_matrix,
@@ -23,14 +25,10 @@ from stickslip.checks import (
 )
 from stickslip.errors import ModelError
 from stickslip.model.coupling import Coupling
-from stickslip.model.damping import DampingLaw, ModalDamping, Rayleigh
+from stickslip.model.damping import DampingLaw
 from stickslip.model.dofs import Dofs
-from stickslip.model.labels import names_of_tables
 from stickslip.model.matrix_units import MatrixUnits, Units
-from stickslip.model.pivots import ROUNDING, scaled_pivots
-from stickslip.model.stability import unstable_row
-
-__all__ = ["DampingLaw", "ModalDamping", "Rayleigh", "Structure", "join"]
+from stickslip.model.stability import ROUNDING, scaled_pivots, unstable_row
 
 # Printed matrices carry rounded digits; anything larger than this is a wrong matrix.
 _ASYMMETRY = 1e-8
@@ -325,3 +323,37 @@ def _damping(
     require_square(matrix, "damping", len(mass))
     require_finite(matrix, "damping", names)
     return matrix
+
+
+def names_of_tables(
+    dofs: Iterable[str] | None, matrices: tuple[object, object, object]
+) -> Iterable[str] | None:
+    """Return the names of the dofs: those given, else those of the columns of tables.
+
+    Rows and columns by the same names in another order, from table to table, or than `dofs` says,
+    would put numbers at other dofs, and are refused.
+    """
+    known: tuple[Any, ...] | None = None
+    if dofs is not None:
+        given = as_list(dofs)
+        if given is None:
+            return dofs
+        dofs = known = given
+    for entry, matrix in zip(("mass", "stiffness", "damping"), matrices, strict=True):
+        for axis in ("columns", "index"):
+            names = _axis_names(matrix, axis)
+            if names is None:
+                continue
+            known = known or names
+            if names != known and (dofs is None or set(names) == set(known)):
+                raise ModelError(
+                    f"{entry}: its {axis} are {brief(list(names))}, beside {brief(list(known))}; "
+                    "give all matrices and dofs in one order, as table.loc[dofs, dofs]"
+                )
+    return dofs if dofs is not None else known
+
+
+def _axis_names(matrix: object, axis: str) -> tuple[str, ...] | None:
+    """Return names of rows or columns; None if they are numbers, or there are none."""
+    names = as_list(getattr(matrix, axis, None))
+    return names if names and all(isinstance(one, str) for one in names) else None

@@ -1,4 +1,4 @@
-"""One period of a response: its motion, and forces, loops and states at the contacts."""
+"""One period of a response: motion, forces, loops and states at contacts; forces at rest."""
 
 from __future__ import annotations
 
@@ -18,11 +18,12 @@ from stickslip.plot import style
 from stickslip.plot.arguments import at, dofs_of, solved_points
 from stickslip.plot.figure import figure, keywords
 from stickslip.plot.limits import limit_model
-from stickslip.plot.options import ForceOptions, HysteresisOptions, LoopOptions, Swept
+from stickslip.plot.options import Drawing, ForceOptions, HysteresisOptions, LoopOptions, Swept
 from stickslip.plot.style import Looks
 from stickslip.results import ForcedResponse
 from stickslip.results.arrays import Float
 from stickslip.results.dataset import point_names
+from stickslip.results.static_response import StaticResponse
 
 _FORWARD, _BACKWARD = ("slips forward", style.BLUE), ("slips backward", style.ORANGE)
 _STATES = {0: ("stuck", "0.85"), 1: _FORWARD, -1: _BACKWARD}
@@ -350,3 +351,26 @@ def _stuck_forces(result: ForcedResponse, number: int, index: int, count: int) -
     for dof in dofs:
         motion[:, linear.structure.index(dof)] = _closed(moved.waveform(dof, 0, count))
     return motion @ own.rows(linear.structure).T @ own.stuck_stiffness
+
+
+@figure
+def static_forces(ax: Axes, /, result: StaticResponse, **options: Unpack[Drawing]) -> None:
+    """Draw the traction of every contact point at rest, and what its friction allows, as bars."""
+    names: list[str] = []
+    tractions: list[float] = []
+    allowed: list[float] = []
+    for name, contact in zip(result.model.contact_names, result.model.contacts, strict=True):
+        forces = result.contact_force(name).reshape(contact.points, -1)
+        tangential = forces[:, :-1] if "N" in contact.components else forces
+        tractions.extend(np.linalg.norm(tangential, axis=1).tolist())
+        allowed.extend(contact.friction_limit(forces).tolist())
+        many = range(contact.points) if contact.points > 1 else [""]
+        names.extend(f"{style.named(name)} {point}".rstrip() for point in many)
+    if not names:
+        raise ModelError("static_forces: the model has no contact")
+    place = np.arange(len(names))
+    finite = [one if np.isfinite(one) else np.nan for one in allowed]
+    ax.bar(place, finite, 0.8, color="0.88", label="friction limit")
+    ax.bar(place, tractions, 0.5, color=style.BLUE, label="traction")
+    ax.set_xticks(place, names, rotation=30 if len(names) > 4 else 0)
+    ax.set(ylabel="force [N]", ylim=(0.0, None))

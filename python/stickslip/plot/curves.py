@@ -14,7 +14,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from stickslip.disk import BladedDisk
-from stickslip.disk.rotor import rotor_order
+from stickslip.disk.bladed_disk import rotor_order
 from stickslip.errors import ModelError
 from stickslip.model import Model, PointRef
 from stickslip.plot import style

@@ -9,7 +9,8 @@ import numpy as np
 
 from stickslip.checks import Matrix, choice, whole_number
 from stickslip.model import Force, Jenkins, Model, StructuralDamper
-from stickslip.model.structure import Rayleigh, Structure, join
+from stickslip.model.damping import Rayleigh
+from stickslip.model.structure import Structure, join
 
 SNECMA_LOADS = (0.938, 2.188, 6.563, 16.563, 20.313, 25.0, 31.475, 38.438)
 """The eight excitation levels of Table 2.3 [N]."""

@@ -6,7 +6,8 @@ import numpy as np
 
 from stickslip.disk import BladedDisk, Coupling
 from stickslip.model import Force
-from stickslip.model.structure import ModalDamping, Structure
+from stickslip.model.damping import ModalDamping
+from stickslip.model.structure import Structure
 from stickslip.reference.beams import damper, snecma_structure
 
 RING_COUPLINGS = (1e3, 3e3, 5e3, 6e3, 7e3, 1.2e4, 1e5)

@@ -8,7 +8,8 @@ import numpy as np
 
 from stickslip.checks import Matrix
 from stickslip.model import Force, Jenkins, Model
-from stickslip.model.structure import ModalDamping, Rayleigh, Structure
+from stickslip.model.damping import ModalDamping, Rayleigh
+from stickslip.model.structure import Structure
 
 BLADE_DAMPER_STIFFNESS = 1e6
 """Stiffness of the damper under the platform of `turbine_blade` [N/m]."""

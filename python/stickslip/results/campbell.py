@@ -10,7 +10,7 @@ from stickslip.disk import BladedDisk, MistunedDisk, NodalDiameters
 from stickslip.drawn import Drawn
 from stickslip.results.fields import Columns, Float, Int, Shown, column
 from stickslip.results.result import ColumnResult
-from stickslip.settings.campbell import CampbellSettings
+from stickslip.settings.speed import CampbellSettings
 
 
 class Crossing(NamedTuple):

@@ -14,7 +14,7 @@ from stickslip.errors import ModelError
 from stickslip.results.arrays import Float, Int, constant
 from stickslip.results.fields import Columns, Complex, Shown, column
 from stickslip.results.result import ColumnResult
-from stickslip.settings.flutter import FlutterSettings
+from stickslip.settings.modes import FlutterSettings
 
 Fate: TypeAlias = Literal[
     "decays",

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stickslip.io.hdf5 import require_held, require_own
-from stickslip.results.record import Record, Variable
+from stickslip.results.dataset import Record, Variable
 
 if TYPE_CHECKING:
     import h5py  # type: ignore[import-untyped, unused-ignore]

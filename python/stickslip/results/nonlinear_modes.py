@@ -17,16 +17,17 @@ from stickslip.model.destabilised import negative_matrix
 from stickslip.model.force import Force
 from stickslip.results.arrays import Float, Int, Measure, amplitude_of, constant, period_of
 from stickslip.results.fields import Shown
-from stickslip.results.mode_arrays import ModeArrays
+from stickslip.results.mode_shapes import ModeArrays
 from stickslip.results.periodic import PeriodicMotions
 from stickslip.results.synthesis import (
+    SynthesizedCycles,
     SynthesizedPeaks,
     SynthesizedResponse,
     force_vector,
     synthesized,
+    synthesized_cycles,
     synthesized_peaks,
 )
-from stickslip.results.synthesized_cycles import SynthesizedCycles, synthesized_cycles
 from stickslip.settings.modes import ModeSettings
 from stickslip.settings.ranges import numbers, positive
 

@@ -10,10 +10,9 @@ from stickslip.drawn import Axes
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.results.damper_curve import DamperCurve, LeastPeak
-from stickslip.results.dataset import Stored
+from stickslip.results.dataset import Record, Stored
 from stickslip.results.diagnostic import Diagnostic, from_attributes, to_json
 from stickslip.results.fields import Columns, Float, column
-from stickslip.results.record import Record
 from stickslip.results.result import Result
 from stickslip.results.status import Status
 from stickslip.results.stored_model import part_variables, parts_of

@@ -23,6 +23,7 @@ from stickslip.model import Model, PointRef
 from stickslip.results.arrays import constant
 from stickslip.results.dataset import (
     Dataset,
+    Record,
     Stored,
     displacement_names,
     labels,
@@ -32,7 +33,6 @@ from stickslip.results.dataset import (
 from stickslip.results.diagnostic import Diagnostic, from_attributes, to_json
 from stickslip.results.documented import Frozen
 from stickslip.results.fields import Columns, Float, Shown
-from stickslip.results.record import Record
 from stickslip.results.table import Frame, Tables
 from stickslip.settings.settings import Settings
 

@@ -16,8 +16,8 @@ from stickslip.errors import ModelError
 from stickslip.files import refusal, require_place, write
 from stickslip.memory import SHARE, physical_memory
 from stickslip.model import Model
+from stickslip.results.dataset import Record, Variable
 from stickslip.results.netcdf import netcdf, record_of
-from stickslip.results.record import Record, Variable
 from stickslip.results.seal import SEAL, require_harmless, seal_variable, sealed, sealed_whole
 from stickslip.results.stored_model import model_of, model_variables
 

@@ -16,10 +16,9 @@ from stickslip.checks import real_number
 from stickslip.drawn import Axes, Drawn, plots
 from stickslip.errors import ModelError
 from stickslip.model import Model
-from stickslip.results.dataset import Dataset, Stored
+from stickslip.results.dataset import Dataset, Record, Stored, Variable
 from stickslip.results.diagnostic import Diagnostic
 from stickslip.results.fields import Float
-from stickslip.results.record import Record, Variable
 from stickslip.results.result import Result
 from stickslip.results.stored_model import model_of, model_variables
 from stickslip.results.table import Family, Tables

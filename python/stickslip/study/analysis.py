@@ -31,16 +31,14 @@ from stickslip.model import Model
 from stickslip.model.measurement import Measured
 from stickslip.results.result import Result
 from stickslip.settings.balance import BalanceKeys
-from stickslip.settings.campbell import CampbellKeys
 from stickslip.settings.cycles import CycleKeys
 from stickslip.settings.entries import ByKey, Factor, Some, Table
 from stickslip.settings.fit import FitSettings
-from stickslip.settings.flutter import FlutterKeys
-from stickslip.settings.modes import ModeKeys
+from stickslip.settings.modes import FlutterKeys, ModeKeys
 from stickslip.settings.motion import BasinKeys, StaticKeys, TransientKeys
 from stickslip.settings.orbits import CertifySettings, OrbitKeys, SingleHarmonicKeys
 from stickslip.settings.peaks import DamperKeys, MistuningKeys, OptimumKeys
-from stickslip.settings.speed import SpeedKeys
+from stickslip.settings.speed import CampbellKeys, SpeedKeys
 from stickslip.settings.uncertainty import UncertaintyKeys
 from stickslip.study.flow_tables import FlowKeys
 from stickslip.study.matrices import (

@@ -13,8 +13,9 @@ from stickslip.disk import BladedDisk, Interface, cyclic_sector
 from stickslip.disk.sector import NEXT, stranger
 from stickslip.errors import ModelError
 from stickslip.model import Model
+from stickslip.model.damping import ModalDamping
 from stickslip.model.matrix_units import MatrixUnits
-from stickslip.model.structure import ModalDamping, Structure, coupled
+from stickslip.model.structure import Structure, coupled
 from stickslip.study.contact_table import ContactTable
 from stickslip.study.damper_table import LoadTable
 from stickslip.study.disk_table import DiskTable, InterfaceTable

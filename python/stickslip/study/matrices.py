@@ -12,7 +12,7 @@ from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
 
 from stickslip.checks import MatrixLike, brief, close, file_path, is_file, unknown
 from stickslip.errors import EntryError, ModelError
-from stickslip.model.structure import DampingLaw, ModalDamping, Rayleigh
+from stickslip.model.damping import DampingLaw, ModalDamping, Rayleigh
 from stickslip.settings.entries import (
     Dof,
     ListOr,

@@ -9,7 +9,7 @@ from importlib import import_module
 from math import inf, pi
 from typing import TYPE_CHECKING, Any, Generic, TypeAlias, TypeVar
 
-from stickslip.disk.rotor import rotor_order
+from stickslip.disk.bladed_disk import rotor_order
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.results.diagnostic import Severity
