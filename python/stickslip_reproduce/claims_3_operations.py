@@ -10,10 +10,7 @@ import stickslip as ss
 from stickslip_reproduce.claims import Found, claim, numbers_of, verdict
 from stickslip_reproduce.numbers import Fact
 from stickslip_reproduce.resolution import Resolution
-from stickslip_reproduce.solver_experiment import (
-    HARMONICS,
-    experiment,
-)
+from stickslip_reproduce.solver_experiment import HARMONICS, experiment
 
 NOISE = 1.25
 """Ratio of two times below which neither is the shorter one."""

@@ -10,14 +10,7 @@ from stickslip_reproduce.claims import Found, claim, numbers_of, verdict
 from stickslip_reproduce.curves import DAMPER, FREQUENCY, curve, maxima
 from stickslip_reproduce.numbers import Axis, Fact, Panel, Plot, Series
 from stickslip_reproduce.resolution import Float, Resolution
-from stickslip_reproduce.ring_responses import (
-    COUPLINGS,
-    SEEDS,
-    factors,
-    peaks,
-    response,
-    ring,
-)
+from stickslip_reproduce.ring_responses import COUPLINGS, SEEDS, factors, peaks, response, ring
 
 INSET = (205.0, 225.0)
 """Range of the subresonances of Fig. 4.21f [rad/s]."""

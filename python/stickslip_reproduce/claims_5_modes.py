@@ -7,14 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 import stickslip as ss
-from stickslip_reproduce.beam_cycles import (
-    BEAM,
-    EVERY,
-    NEGATIVE,
-    at_one,
-    branch,
-    cases,
-)
+from stickslip_reproduce.beam_cycles import BEAM, EVERY, NEGATIVE, at_one, branch, cases
 from stickslip_reproduce.claims import Found, claim, numbers_of, verdict
 from stickslip_reproduce.cycles import MODES, at, turn
 from stickslip_reproduce.numbers import Fact

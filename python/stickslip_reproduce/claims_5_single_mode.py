@@ -5,13 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 import stickslip as ss
-from stickslip_reproduce.beam_cycles import (
-    BEAM,
-    LIMIT,
-    RATIOS,
-    alone,
-    single,
-)
+from stickslip_reproduce.beam_cycles import BEAM, LIMIT, RATIOS, alone, single
 from stickslip_reproduce.chapter_5_modes import STARTS
 from stickslip_reproduce.claims import Found, claim, verdict
 from stickslip_reproduce.cycles import at, held, stable_share, turn

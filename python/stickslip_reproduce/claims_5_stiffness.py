@@ -9,13 +9,7 @@ import numpy as np
 import stickslip as ss
 from stickslip_reproduce.claims import Found, claim, verdict
 from stickslip_reproduce.cycles import at, turn
-from stickslip_reproduce.mass_cycles import (
-    FREE,
-    LIMIT,
-    MODEL,
-    NEGATIVE,
-    NOMINAL,
-)
+from stickslip_reproduce.mass_cycles import FREE, LIMIT, MODEL, NEGATIVE, NOMINAL
 from stickslip_reproduce.numbers import Fact
 from stickslip_reproduce.resolution import Resolution
 

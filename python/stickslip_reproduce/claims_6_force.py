@@ -13,14 +13,7 @@ from stickslip_reproduce.chapter_6 import DOFS, HARMONICS
 from stickslip_reproduce.claims import Found, claim, verdict
 from stickslip_reproduce.curves import PERIOD_SHARE, over_period
 from stickslip_reproduce.numbers import Axis, Fact, Panel, Plot
-from stickslip_reproduce.pair_orbits import (
-    CASES,
-    LIMITS,
-    forces_at,
-    middle,
-    orbit,
-    with_limits,
-)
+from stickslip_reproduce.pair_orbits import CASES, LIMITS, forces_at, middle, orbit, with_limits
 from stickslip_reproduce.resolution import Float, Resolution
 from stickslip_reproduce.solver_experiment import begins, experiment
 from stickslip_reproduce.solvers import Overshooting, solve

@@ -9,13 +9,7 @@ import numpy as np
 import stickslip as ss
 from stickslip_reproduce.claims import Found, claim, verdict
 from stickslip_reproduce.numbers import Fact
-from stickslip_reproduce.pair_orbits import (
-    LIMITS,
-    forces_at,
-    middle,
-    orbit,
-    stuck,
-)
+from stickslip_reproduce.pair_orbits import LIMITS, forces_at, middle, orbit, stuck
 from stickslip_reproduce.resolution import Float, Resolution
 
 

@@ -12,12 +12,7 @@ from stickslip_reproduce.chapter_6 import DOFS, HARMONICS, SPAN
 from stickslip_reproduce.claims import Found, claim, verdict
 from stickslip_reproduce.curves import FREQUENCY
 from stickslip_reproduce.numbers import Axis, Fact, Panel, Plot, Series
-from stickslip_reproduce.pair_orbits import (
-    WIDE,
-    curves,
-    sets,
-    with_limits,
-)
+from stickslip_reproduce.pair_orbits import WIDE, curves, sets, with_limits
 from stickslip_reproduce.resolution import Resolution
 
 LINK = 1e5

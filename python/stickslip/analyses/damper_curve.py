@@ -11,11 +11,7 @@ from stickslip.analyses.arguments import require_forced, require_held
 from stickslip.analyses.doubts import is_unique
 from stickslip.analyses.peak_assumptions import damper_assumptions
 from stickslip.analyses.run import Progress, Run, refusals
-from stickslip.analyses.variation import (
-    local_stiffness,
-    resonance_range,
-    variation_of,
-)
+from stickslip.analyses.variation import local_stiffness, resonance_range, variation_of
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.results.arrays import Bool, Float

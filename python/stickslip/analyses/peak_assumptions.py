@@ -4,11 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from stickslip.analyses.assumptions import (
-    LARGE_ERROR,
-    bounds_of,
-    direct_assumption,
-)
+from stickslip.analyses.assumptions import LARGE_ERROR, bounds_of, direct_assumption
 from stickslip.analyses.doubts import doubts, mistuning_unit, structure_doubts
 from stickslip.analyses.texts import told
 from stickslip.checks import listed

@@ -8,13 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.checks import (
-    brief,
-    members,
-    text,
-    unknown,
-    whole_number,
-)
+from stickslip.checks import brief, members, text, unknown, whole_number
 from stickslip.errors import ModelError
 from stickslip.fe.reduced_modes import MASSLESS
 from stickslip.fe.reduction import Reduction, panels

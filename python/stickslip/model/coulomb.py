@@ -10,14 +10,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.checks import (
-    Matrix,
-    brief,
-    members,
-    require_keys,
-    set_fields,
-    whole_number,
-)
+from stickslip.checks import Matrix, brief, members, require_keys, set_fields, whole_number
 from stickslip.errors import ModelError
 from stickslip.model.contact import OPEN, Bonded, Contact
 from stickslip.model.dofs import Dofs

@@ -24,11 +24,7 @@ from pydantic import (
     model_validator,
 )
 from pydantic_core import PydanticCustomError
-from pydantic_core.core_schema import (
-    CoreSchema,
-    int_schema,
-    no_info_before_validator_function,
-)
+from pydantic_core.core_schema import CoreSchema, int_schema, no_info_before_validator_function
 
 from stickslip.checks import MAX_COUNT, brief, choice, real_number, unknown, whole_number
 from stickslip.errors import EntryError

@@ -27,13 +27,7 @@ from stickslip.settings.entries import (
     Text,
     span_of,
 )
-from stickslip.settings.ranges import (
-    Dofs,
-    Float,
-    Or,
-    PeakSpan,
-    numbers,
-)
+from stickslip.settings.ranges import Dofs, Float, Or, PeakSpan, numbers
 from stickslip.settings.settings import Settings
 from stickslip.settings.sweep import ParameterKeys
 from stickslip.settings.variation import ContactKeys, Parameter, Variation, unit_of

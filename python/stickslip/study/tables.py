@@ -8,20 +8,9 @@ from typing import Annotated, Literal, Self
 from pydantic import BeforeValidator, Field, model_validator
 
 from stickslip.errors import ModelError
-from stickslip.model import (
-    Force,
-)
+from stickslip.model import Force
 from stickslip.model.force import engine_order_forces
-from stickslip.settings.entries import (
-    ONE_OF,
-    Angle,
-    Dof,
-    Index,
-    Many,
-    Newtons,
-    Some,
-    Table,
-)
+from stickslip.settings.entries import ONE_OF, Angle, Dof, Index, Many, Newtons, Some, Table
 from stickslip.settings.sweep import SweepKeys
 from stickslip.study.analysis import AnyAnalysis
 from stickslip.study.contact_table import ContactTable

@@ -5,18 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 from math import pi
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from stickslip.drawn import plots
 from stickslip.results.campbell import Campbell
-from stickslip.views.kinds import Dofs, Rows, View
+from stickslip.views.kinds import Dofs, Output, Rows, View
 from stickslip.views.picture import Panels
 from stickslip.views.tables import Row
-
-if TYPE_CHECKING:
-    from stickslip.study.tables import OutputTable
 
 _NEAR = 3
 
@@ -71,7 +67,7 @@ class CampbellView(View[Campbell]):
             ("orders", ", ".join(map(str, result.orders))),
         ]
 
-    def panels(self, results: Sequence[Campbell], dofs: Dofs, output: OutputTable) -> Panels:
+    def panels(self, results: Sequence[Campbell], dofs: Dofs, output: Output) -> Panels:
         """Return the diagram that the settings name."""
         drawn: Panels = []
         for one in results:

@@ -6,7 +6,6 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
 from math import inf, pi
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,12 +16,9 @@ from stickslip.results.exact_response import ExactResponse
 from stickslip.results.fields import Int
 from stickslip.results.forced_response import ForcedResponse
 from stickslip.results.stability import stability_counts
-from stickslip.views.kinds import LENGTHS, RPM, Dofs, Rows, View
+from stickslip.views.kinds import LENGTHS, RPM, Dofs, Output, Rows, View
 from stickslip.views.picture import Panel, Panels, labelled
 from stickslip.views.tables import Row, Table, bound_rows, tabulated
-
-if TYPE_CHECKING:
-    from stickslip.study.tables import OutputTable
 
 _SLIP_POINTS = 12
 _LOOPS = 2
@@ -111,14 +107,14 @@ class CurveView(View[ForcedResponse]):
             found.append(f"{count} ({failed[0]}). {failed[0].advice}")
         return found
 
-    def panels(self, results: Sequence[ForcedResponse], dofs: Dofs, output: OutputTable) -> Panels:
+    def panels(self, results: Sequence[ForcedResponse], dofs: Dofs, output: Output) -> Panels:
         """Return the response curves, one panel per DOF."""
         length, omega = output.length_unit, output.omega_unit
         draw = partial(plots.curves, results, omega_unit=omega, length_unit=length)
         return [partial(draw, dof) for dof in dofs]
 
     def told_apart(
-        self, results: Sequence[tuple[str, ForcedResponse]], dofs: Dofs, output: OutputTable
+        self, results: Sequence[tuple[str, ForcedResponse]], dofs: Dofs, output: Output
     ) -> Panels:
         """Return curves in one figure, with their names and what distinguishes them."""
         from stickslip.plot.curves import traits_of
@@ -126,12 +122,12 @@ class CurveView(View[ForcedResponse]):
         names, curves = zip(*results, strict=True)
         return labelled(self.panels(curves, dofs, output), names, traits_of(curves))
 
-    def details(self, result: ForcedResponse, dofs: Dofs, output: OutputTable) -> Panels:
+    def details(self, result: ForcedResponse, dofs: Dofs, output: Output) -> Panels:
         """Return blades, slip, loops at the peak and multipliers, as far as a curve has them."""
         return list(_details(result, dofs, output)) if result.arrays.solved.any() else []
 
 
-def _details(result: ForcedResponse, dofs: Dofs, output: OutputTable) -> Iterator[Panel]:
+def _details(result: ForcedResponse, dofs: Dofs, output: Output) -> Iterator[Panel]:
     length, omega = output.length_unit, output.omega_unit
     if isinstance(result.model, MistunedDisk):
         for dof in _of_sectors(result.model, dofs):

@@ -4,19 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from stickslip.drawn import plots
 from stickslip.results.limit_cycles import LimitCycles, StabilityMap
 from stickslip.results.stability import STATES, stability_counts
-from stickslip.views.kinds import Dofs, Rows, View
+from stickslip.views.kinds import Dofs, Output, Rows, View
 from stickslip.views.picture import Panels, labelled, titled
 from stickslip.views.tables import Row, counted
-
-if TYPE_CHECKING:
-    from stickslip.study.tables import OutputTable
 
 
 class CycleView(View[LimitCycles]):
@@ -64,7 +60,7 @@ class CycleView(View[LimitCycles]):
         """Word what was not solved, one line per cause."""
         return counted(result.status, f"{result.omega.size} cycles")
 
-    def panels(self, results: Sequence[LimitCycles], dofs: Dofs, output: OutputTable) -> Panels:
+    def panels(self, results: Sequence[LimitCycles], dofs: Dofs, output: Output) -> Panels:
         """Return amplitude over what is followed, one panel per DOF, and the multipliers."""
         length, omega = output.length_unit, output.omega_unit
         curves = partial(
@@ -81,7 +77,7 @@ class CycleView(View[LimitCycles]):
         ]
 
     def told_apart(
-        self, results: Sequence[tuple[str, LimitCycles]], dofs: Dofs, output: OutputTable
+        self, results: Sequence[tuple[str, LimitCycles]], dofs: Dofs, output: Output
     ) -> Panels:
         """Return branches in one figure, with their names and modes."""
         names, branches = zip(*results, strict=True)
@@ -129,6 +125,6 @@ class MapView(View[StabilityMap]):
             ("method", "exact orbits" if settings.method == "exact" else "harmonic balance"),
         ]
 
-    def panels(self, results: Sequence[StabilityMap], dofs: Dofs, output: OutputTable) -> Panels:
+    def panels(self, results: Sequence[StabilityMap], dofs: Dofs, output: Output) -> Panels:
         """Return the maps."""
         return [partial(plots.stability_map, result) for result in results]

@@ -4,17 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
-from typing import TYPE_CHECKING
 
 from stickslip.drawn import plots
 from stickslip.results.damper_curve import DamperCurve
 from stickslip.results.optimal_damper import OptimalDamper
-from stickslip.views.kinds import RPM, Dofs, Rows, View
+from stickslip.views.kinds import RPM, Dofs, Output, Rows, View
 from stickslip.views.picture import Panels
 from stickslip.views.tables import Row, assumed, bound_rows, counted, model_rows
-
-if TYPE_CHECKING:
-    from stickslip.study.tables import OutputTable
 
 
 class DamperView(View[DamperCurve]):
@@ -60,7 +56,7 @@ class DamperView(View[DamperCurve]):
         """Word what was not solved, one line per cause."""
         return counted(result.status, f"{result.values.size} values")
 
-    def panels(self, results: Sequence[DamperCurve], dofs: Dofs, output: OutputTable) -> Panels:
+    def panels(self, results: Sequence[DamperCurve], dofs: Dofs, output: Output) -> Panels:
         """Return the damper performance curves: amplitude, frequency, limits and optimum."""
         length, omega = output.length_unit, output.omega_unit
         draw = partial(plots.damper, length_unit=length, omega_unit=omega)
@@ -101,6 +97,6 @@ class OptimumView(View[OptimalDamper]):
         """Word what was not solved, one line per cause."""
         return DamperView().failures(result.curve)
 
-    def panels(self, results: Sequence[OptimalDamper], dofs: Dofs, output: OutputTable) -> Panels:
+    def panels(self, results: Sequence[OptimalDamper], dofs: Dofs, output: Output) -> Panels:
         """Return the damper performance curves."""
         return DamperView().panels([result.curve for result in results], dofs, output)

@@ -4,16 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
-from typing import TYPE_CHECKING
 
 from stickslip.drawn import plots
 from stickslip.results.fit import Fit
-from stickslip.views.kinds import Dofs, Rows, View
+from stickslip.views.kinds import Dofs, Output, Rows, View
 from stickslip.views.picture import Panels
 from stickslip.views.tables import Row
-
-if TYPE_CHECKING:
-    from stickslip.study.tables import OutputTable
 
 
 class FitView(View[Fit]):
@@ -42,7 +38,7 @@ class FitView(View[Fit]):
             ("evaluations", f"{result.counters['evaluations']}"),
         ]
 
-    def panels(self, results: Sequence[Fit], dofs: Dofs, output: OutputTable) -> Panels:
+    def panels(self, results: Sequence[Fit], dofs: Dofs, output: Output) -> Panels:
         """Return measured and predicted numbers, and their differences."""
         units = {"length_unit": output.length_unit, "omega_unit": output.omega_unit}
         drawn: Panels = []
@@ -57,6 +53,6 @@ class FitView(View[Fit]):
             drawn.append(partial(plots.fit_residuals, one))
         return drawn
 
-    def details(self, result: Fit, dofs: Dofs, output: OutputTable) -> Panels:
+    def details(self, result: Fit, dofs: Dofs, output: Output) -> Panels:
         """Return the intervals."""
         return [partial(plots.fit_intervals, result)] if result.arrays.value.all() else []

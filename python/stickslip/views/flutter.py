@@ -6,19 +6,15 @@ from collections import Counter
 from collections.abc import Sequence
 from functools import partial
 from math import isnan
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from stickslip.drawn import plots
 from stickslip.results.flutter_map import FATES, FlutterMap
 from stickslip.results.stability import STATES
-from stickslip.views.kinds import Dofs, Rows, View
+from stickslip.views.kinds import Dofs, Output, Rows, View
 from stickslip.views.picture import Panel, Panels
 from stickslip.views.tables import Row
-
-if TYPE_CHECKING:
-    from stickslip.study.tables import OutputTable
 
 
 class FlutterView(View[FlutterMap]):
@@ -73,7 +69,7 @@ class FlutterView(View[FlutterMap]):
             *((f"{fates[one]} waves", text) for one, text in FATES.items() if fates[one]),
         ]
 
-    def panels(self, results: Sequence[FlutterMap], dofs: Dofs, output: OutputTable) -> Panels:
+    def panels(self, results: Sequence[FlutterMap], dofs: Dofs, output: Output) -> Panels:
         """Return amplitudes over nodal diameter, and over aerodynamic damping where it is held."""
         length = output.length_unit
         made: list[Panel] = []

@@ -53,6 +53,8 @@ _NUMBER = re.compile(r"[+-]?[0-9.]+(e[+-]?[0-9]+)?")
 Kind = TypeVar("Kind", bound=Result)
 Dofs: TypeAlias = Sequence[str]
 """Names of DOFs."""
+Output: TypeAlias = "OutputTable"
+"""What a study asks of its figures and tables."""
 Rows: TypeAlias = Iterable[Sequence[str]]
 """Cells of tables, row by row."""
 
@@ -146,11 +148,11 @@ class View(ABC, Generic[Kind]):
         return []
 
     @abstractmethod
-    def panels(self, results: Sequence[Kind], dofs: Dofs, output: OutputTable) -> Panels:
+    def panels(self, results: Sequence[Kind], dofs: Dofs, output: Output) -> Panels:
         """Return the default picture of results, together."""
 
     def named_panels(
-        self, results: Sequence[tuple[str, Kind]], dofs: Dofs, output: OutputTable
+        self, results: Sequence[tuple[str, Kind]], dofs: Dofs, output: Output
     ) -> Panels:
         """Return the default picture of results, each with its name where there are several.
 
@@ -163,9 +165,7 @@ class View(ABC, Generic[Kind]):
             return self.panels([results[0][1]], dofs, output)
         return self.told_apart(results, dofs, output)
 
-    def told_apart(
-        self, results: Sequence[tuple[str, Kind]], dofs: Dofs, output: OutputTable
-    ) -> Panels:
+    def told_apart(self, results: Sequence[tuple[str, Kind]], dofs: Dofs, output: Output) -> Panels:
         """Return the pictures of several results, each below its name."""
         drawn: Panels = []
         refused: ModelError | None = None
@@ -178,7 +178,7 @@ class View(ABC, Generic[Kind]):
             raise refused
         return drawn
 
-    def details(self, result: Kind, dofs: Dofs, output: OutputTable) -> Panels:
+    def details(self, result: Kind, dofs: Dofs, output: Output) -> Panels:
         """Return what a report shows of one result beside the default picture."""
         return []
 

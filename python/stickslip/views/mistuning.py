@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 from itertools import product
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,12 +12,9 @@ from stickslip.drawn import plots
 from stickslip.errors import ModelError
 from stickslip.results.mistuning import MistuningStudy
 from stickslip.results.weibull import fit_weibull
-from stickslip.views.kinds import Dofs, Rows, View
+from stickslip.views.kinds import Dofs, Output, Rows, View
 from stickslip.views.picture import Panels, titled
 from stickslip.views.tables import Row, counted, listed
-
-if TYPE_CHECKING:
-    from stickslip.study.tables import OutputTable
 
 _HIGH = 99.9
 """Percentile of the fit that is printed."""
@@ -75,7 +71,7 @@ class MistuningView(View[MistuningStudy]):
         """Word what was not solved, one line per cause."""
         return counted(result.status.ravel(), f"{result.status.size} peaks")
 
-    def panels(self, results: Sequence[MistuningStudy], dofs: Dofs, output: OutputTable) -> Panels:
+    def panels(self, results: Sequence[MistuningStudy], dofs: Dofs, output: Output) -> Panels:
         """Return the distributions; of several deviations or couplings how they move them."""
         drawn: Panels = []
         for result in results:
@@ -89,7 +85,7 @@ class MistuningView(View[MistuningStudy]):
                     drawn.append(partial(plots.distribution, result, dof))
         return drawn
 
-    def details(self, result: MistuningStudy, dofs: Dofs, output: OutputTable) -> Panels:
+    def details(self, result: MistuningStudy, dofs: Dofs, output: Output) -> Panels:
         """Return the distributions behind a picture of several deviations or couplings."""
         deviations, couplings = result.deviation.tolist(), result.coupling_stiffness.tolist()
         if len(deviations) == 1 and len(couplings) == 1:

@@ -4,18 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from stickslip.drawn import plots
 from stickslip.results.nonlinear_modes import NonlinearModes
-from stickslip.views.kinds import Dofs, Rows, View
+from stickslip.views.kinds import Dofs, Output, Rows, View
 from stickslip.views.picture import Panels, labelled
 from stickslip.views.tables import Row, counted
-
-if TYPE_CHECKING:
-    from stickslip.study.tables import OutputTable
 
 _MOST = 12
 """Rows of a branch."""
@@ -62,7 +58,7 @@ class ModeView(View[NonlinearModes]):
         """Word what was not solved, one line per cause."""
         return counted(result.status, f"{result.omega.size} amplitudes")
 
-    def panels(self, results: Sequence[NonlinearModes], dofs: Dofs, output: OutputTable) -> Panels:
+    def panels(self, results: Sequence[NonlinearModes], dofs: Dofs, output: Output) -> Panels:
         """Return frequency over amplitude, and damping."""
         options = {"omega_unit": output.omega_unit}
         return [
@@ -71,7 +67,7 @@ class ModeView(View[NonlinearModes]):
         ]
 
     def told_apart(
-        self, results: Sequence[tuple[str, NonlinearModes]], dofs: Dofs, output: OutputTable
+        self, results: Sequence[tuple[str, NonlinearModes]], dofs: Dofs, output: Output
     ) -> Panels:
         """Return modes in one figure, with their names and what distinguishes them."""
         from stickslip.plot.modes import names_of

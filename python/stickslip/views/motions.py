@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,12 +13,9 @@ from stickslip.errors import ModelError
 from stickslip.results.basin_map import BasinMap
 from stickslip.results.fate_arrays import Motion
 from stickslip.results.motion_class import MotionClass
-from stickslip.views.kinds import Dofs, Rows, View
+from stickslip.views.kinds import Dofs, Output, Rows, View
 from stickslip.views.picture import Panels
 from stickslip.views.tables import Row
-
-if TYPE_CHECKING:
-    from stickslip.study.tables import OutputTable
 
 
 class MotionView(View[MotionClass]):
@@ -53,7 +49,7 @@ class MotionView(View[MotionClass]):
         undecided = result.motion == Motion.UNDECIDED
         return [f"{result.motion}. {result.reason.advice}"] if undecided else []
 
-    def panels(self, results: Sequence[MotionClass], dofs: Dofs, output: OutputTable) -> Panels:
+    def panels(self, results: Sequence[MotionClass], dofs: Dofs, output: Output) -> Panels:
         """Return the spectra of motions that have one."""
         unit, drawn = output.omega_unit, [result for result in results if len(result.tail)]
         if not drawn:
@@ -102,7 +98,7 @@ class BasinView(View[BasinMap]):
             for reason, count in counts.items()
         ]
 
-    def panels(self, results: Sequence[BasinMap], dofs: Dofs, output: OutputTable) -> Panels:
+    def panels(self, results: Sequence[BasinMap], dofs: Dofs, output: Output) -> Panels:
         """Return the maps over two axes."""
         unit, drawn = output.length_unit, [result for result in results if result.settings.axes]
         if not drawn:

@@ -5,18 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 from math import pi
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from stickslip.drawn import plots
 from stickslip.results.speed_response import SpeedResponse
-from stickslip.views.kinds import Dofs, Rows, View
+from stickslip.views.kinds import Dofs, Output, Rows, View
 from stickslip.views.picture import Panels, labelled
 from stickslip.views.tables import Row
-
-if TYPE_CHECKING:
-    from stickslip.study.tables import OutputTable
 
 
 class SpeedView(View[SpeedResponse]):
@@ -61,7 +57,7 @@ class SpeedView(View[SpeedResponse]):
             "response curve at such a speed, which follows the solution along the frequency."
         ]
 
-    def panels(self, results: Sequence[SpeedResponse], dofs: Dofs, output: OutputTable) -> Panels:
+    def panels(self, results: Sequence[SpeedResponse], dofs: Dofs, output: Output) -> Panels:
         """Return amplitudes over the speed, one panel per DOF with a line per engine order."""
         draw = partial(plots.speed_response, length_unit=output.length_unit)
         return [
@@ -70,7 +66,7 @@ class SpeedView(View[SpeedResponse]):
         ]
 
     def told_apart(
-        self, results: Sequence[tuple[str, SpeedResponse]], dofs: Dofs, output: OutputTable
+        self, results: Sequence[tuple[str, SpeedResponse]], dofs: Dofs, output: Output
     ) -> Panels:
         """Return responses of a degree of freedom in one figure, with their names and orders."""
         drawn = self.panels([one for _, one in results], dofs, output)

@@ -4,19 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from stickslip.drawn import plots
 from stickslip.results.static_response import StaticResponse
 from stickslip.results.status import RestStatus
-from stickslip.views.kinds import Dofs, Rows, View
+from stickslip.views.kinds import Dofs, Output, Rows, View
 from stickslip.views.picture import Panels
 from stickslip.views.tables import Row
-
-if TYPE_CHECKING:
-    from stickslip.study.tables import OutputTable
 
 
 class StaticView(View[StaticResponse]):
@@ -46,6 +42,6 @@ class StaticView(View[StaticResponse]):
         converged = result.status == RestStatus.CONVERGED
         return [] if converged else [f"{result.status}. {result.status.advice}"]
 
-    def panels(self, results: Sequence[StaticResponse], dofs: Dofs, output: OutputTable) -> Panels:
+    def panels(self, results: Sequence[StaticResponse], dofs: Dofs, output: Output) -> Panels:
         """Return the forces of the contacts."""
         return [partial(plots.static_forces, one) for one in results]

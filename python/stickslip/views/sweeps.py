@@ -4,17 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from stickslip.drawn import plots
 from stickslip.results.forced_response import ForcedResponse
 from stickslip.results.sweep import Sweep
-from stickslip.views.kinds import Dofs, Rows, View, view_of
+from stickslip.views.kinds import Dofs, Output, Rows, View, view_of
 from stickslip.views.picture import Panels, titled
 from stickslip.views.tables import Row, Table
-
-if TYPE_CHECKING:
-    from stickslip.study.tables import OutputTable
 
 
 class SweepView(View[Sweep]):
@@ -75,7 +72,7 @@ class SweepView(View[Sweep]):
             for text in view.failures(one)
         ]
 
-    def panels(self, results: Sequence[Sweep], dofs: Dofs, output: OutputTable) -> Panels:
+    def panels(self, results: Sequence[Sweep], dofs: Dofs, output: Output) -> Panels:
         """Return the family of curves, of each sweep by itself."""
         drawn: Panels = []
         for result in results:

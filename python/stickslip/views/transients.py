@@ -4,16 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
-from typing import TYPE_CHECKING
 
 from stickslip.drawn import plots
 from stickslip.results.transient import Transient
-from stickslip.views.kinds import Dofs, Rows, View
+from stickslip.views.kinds import Dofs, Output, Rows, View
 from stickslip.views.picture import Panels, titled
 from stickslip.views.tables import Row
-
-if TYPE_CHECKING:
-    from stickslip.study.tables import OutputTable
 
 _LOOPS = 100
 """Periods of a phase plane in a report."""
@@ -62,7 +58,7 @@ class TransientView(View[Transient]):
             return []
         return [f"{result.status} after {result.periods} periods. {result.status.advice}"]
 
-    def panels(self, results: Sequence[Transient], dofs: Dofs, output: OutputTable) -> Panels:
+    def panels(self, results: Sequence[Transient], dofs: Dofs, output: Output) -> Panels:
         """Return histories of DOFs and contacts, section and spectrum of the first DOF."""
         drawn: Panels = []
         for result in results:
@@ -76,7 +72,7 @@ class TransientView(View[Transient]):
                 drawn.append(partial(plots.spectrum, result, dofs[0], omega_unit=omega))
         return drawn
 
-    def details(self, result: Transient, dofs: Dofs, output: OutputTable) -> Panels:
+    def details(self, result: Transient, dofs: Dofs, output: Output) -> Panels:
         """Return the phase plane of the first DOF."""
         if not result.periods:
             return []

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 from importlib.util import find_spec
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,12 +12,9 @@ from stickslip.drawn import plots
 from stickslip.results.expansion import FEWEST
 from stickslip.results.uncertainty import Uncertainty, reasons_in_words
 from stickslip.settings.quantities import Backbone
-from stickslip.views.kinds import Dofs, Rows, View
+from stickslip.views.kinds import Dofs, Output, Rows, View
 from stickslip.views.picture import Panels
 from stickslip.views.tables import Row
-
-if TYPE_CHECKING:
-    from stickslip.study.tables import OutputTable
 
 _SHOWN = (5.0, 50.0, 95.0)
 
@@ -62,7 +58,7 @@ class UncertaintyView(View[Uncertainty]):
         counts = reasons_in_words(result.reasons).items()
         return [f"{count} of {total} samples: {reason}" for reason, count in counts]
 
-    def panels(self, results: Sequence[Uncertainty], dofs: Dofs, output: OutputTable) -> Panels:
+    def panels(self, results: Sequence[Uncertainty], dofs: Dofs, output: Output) -> Panels:
         """Return distributions, of backbones their bands."""
         drawn: Panels = []
         for one in results:
@@ -79,7 +75,7 @@ class UncertaintyView(View[Uncertainty]):
                 ]
         return drawn
 
-    def details(self, result: Uncertainty, dofs: Dofs, output: OutputTable) -> Panels:
+    def details(self, result: Uncertainty, dofs: Dofs, output: Output) -> Panels:
         """Return the shares of the parameters, where a surrogate can be made."""
         if find_spec("openturns") is None or isinstance(result.settings.quantity, Backbone):
             return []
