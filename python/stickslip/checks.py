@@ -38,6 +38,7 @@ _LONGEST_PATH = 4096
 # A sign, zeros and a point before a digit that is none: the mantissa of a number that is not 0.
 _NOT_ZERO = re.compile(r"\s*[+-]?[0._]*[1-9]")
 _Member = TypeVar("_Member")
+_Scalar = TypeVar("_Scalar", bound=np.generic)
 _RESERVED = re.compile(r"con|prn|aux|nul|(com|lpt)[0-9¹²³]|conin\$|conout\$", re.I)
 
 
@@ -359,5 +360,11 @@ def set_fields(owner: object, **values: object) -> None:
     """Set the fields of an immutable object; arrays become read-only."""
     for name, value in values.items():
         if isinstance(value, np.ndarray):
-            value.flags.writeable = False
+            constant(value)
         object.__setattr__(owner, name, value)
+
+
+def constant(array: NDArray[_Scalar]) -> NDArray[_Scalar]:
+    """Make an array read-only, in place, and return it."""
+    array.flags.writeable = False
+    return array

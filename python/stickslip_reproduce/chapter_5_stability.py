@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 
 import stickslip as ss
-from stickslip.results.arrays import Float
+from stickslip.results.fields import Float
 from stickslip.results.motion_class import Line
 from stickslip_reproduce import errata
 from stickslip_reproduce.curves import DAMPER

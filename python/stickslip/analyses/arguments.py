@@ -15,7 +15,7 @@ from stickslip.errors import ModelError
 from stickslip.model import ContactLaw, Model, natural_frequencies
 from stickslip.model.notable import loaded_dofs, massless_dofs, physical_dofs
 from stickslip.model.state import State
-from stickslip.results.arrays import Int
+from stickslip.results.fields import Int
 from stickslip.settings.balance import BalanceKeys, HarmonicSettings, ObserveKeys
 from stickslip.settings.entries import Residual
 

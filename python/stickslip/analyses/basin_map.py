@@ -17,9 +17,9 @@ from stickslip.memory import require_numbers
 from stickslip.model import Model
 from stickslip.model.damping import held_stiffness, modes_of
 from stickslip.model.state import State
-from stickslip.results.arrays import Float
 from stickslip.results.basin_map import BasinMap
 from stickslip.results.fate_arrays import FateArrays
+from stickslip.results.fields import Float
 from stickslip.settings.motion import Axis, BasinKeys, BasinSettings, ClassifySettings
 from stickslip.settings.settings import configured
 

@@ -13,9 +13,10 @@ from stickslip.analyses.run import Progress, Run, share
 from stickslip.checks import brief, members
 from stickslip.errors import Interrupted, ModelError
 from stickslip.results import ForcedResponse
-from stickslip.results.arrays import Bool, Float, Int
+from stickslip.results.arrays import period_of
 from stickslip.results.certificate import Certificate
 from stickslip.results.exact_response import ExactResponse
+from stickslip.results.fields import Bool, Float, Int
 from stickslip.results.status import Status
 from stickslip.settings.orbits import CertifySettings, ExactSettings
 from stickslip.settings.settings import configured
@@ -115,12 +116,9 @@ def _comparison(
 ) -> Callable[[int], Float]:
     """Return what gives the largest differences between curve and orbit over a period, (d,)."""
     series = np.stack([result.coefficients(dof) for dof in exact.dofs], axis=2)
-    # Whole turns are dropped before the angle is formed: high harmonics keep all digits.
-    turns = np.outer(np.arange(_SAMPLES), np.arange(series.shape[1])) % _SAMPLES
-    turn = np.exp(2j * np.pi / _SAMPLES * turns)
 
     def compare(place: int) -> Float:
-        curve = (turn @ series[indices[place]]).real
+        curve = period_of(series[indices[place]], _SAMPLES)
         largest: Float = np.abs(curve - exact.waveforms(place, _SAMPLES)).max(axis=0)
         return largest
 

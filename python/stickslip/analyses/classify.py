@@ -22,8 +22,8 @@ from stickslip.errors import Interrupted, ModelError
 from stickslip.memory import require_numbers
 from stickslip.model import Model, Structure, natural_frequencies
 from stickslip.model.state import State
-from stickslip.results.arrays import Float, Int
 from stickslip.results.fate_arrays import Motion, Reason
+from stickslip.results.fields import Float, Int
 from stickslip.results.motion_class import MotionArrays, MotionClass
 from stickslip.settings.motion import ClassifyKeys, ClassifySettings, TransientSettings
 from stickslip.settings.settings import configured

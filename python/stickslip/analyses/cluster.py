@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, Self, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, Self, TypeAlias, TypeVar
 
 from stickslip import _core
 from stickslip.analyses.pattern_store import Row
@@ -12,12 +12,14 @@ from stickslip.checks import brief
 from stickslip.disk.bladed_disk import BladedDisk
 from stickslip.disk.mistuned import tuned_disk
 from stickslip.errors import ModelError
-from stickslip.results.arrays import Float
+from stickslip.results.fields import Float
 from stickslip.settings.peaks import MistuningSettings
 
 if TYPE_CHECKING:
-    # Installed with the extra "dask".
-    from distributed import Client  # type: ignore[import-not-found, unused-ignore]
+    import distributed  # type: ignore[import-not-found, unused-ignore]
+
+Client: TypeAlias = "distributed.Client"
+"""Of the package that the extra "dask" installs."""
 
 _BATCHES = 16
 """Batches per thread of the cluster: enough to share the work evenly, and to lose little."""
@@ -56,6 +58,27 @@ class Batch(NamedTuple):
             numbers=self.numbers[place],
         )
 
+    def compute(
+        self,
+        threads: int,
+        deliver: Callable[[int, list[_core.Summit], int], None],
+        heed: Callable[[float], None],
+    ) -> bool:
+        """Compute the disks; False if Ctrl-C has ended it."""
+        with refusals(*self.disks):
+            return _core.mistuning_study(
+                [tuned_disk(one) for one in self.disks],
+                self.which,
+                self.deviations,
+                self.groups,
+                self.settings,
+                self.settings,
+                self.orders,
+                threads,
+                deliver,
+                heed,
+            )
+
 
 def computed(batch: Batch) -> tuple[str, list[tuple[int, list[Row], int]]]:
     """Compute a batch with one thread; return the version of stickslip, and what it has found."""
@@ -64,19 +87,7 @@ def computed(batch: Batch) -> tuple[str, list[tuple[int, list[Row], int]]]:
     def keep(index: int, rows: list[_core.Summit], points: int) -> None:
         found.append((batch.numbers[index], [Row(*row) for row in rows], points))
 
-    with refusals(*batch.disks):
-        _core.mistuning_study(
-            [tuned_disk(one) for one in batch.disks],
-            batch.which,
-            batch.deviations,
-            batch.groups,
-            batch.settings,
-            batch.settings,
-            batch.orders,
-            1,
-            keep,
-            lambda _: None,
-        )
+    batch.compute(1, keep, lambda _: None)
     return _core.__version__, found
 
 

@@ -14,8 +14,8 @@ from stickslip.analyses.run import Progress, Run, refusals
 from stickslip.analyses.variation import local_stiffness, resonance_range, variation_of
 from stickslip.errors import ModelError
 from stickslip.model import Model
-from stickslip.results.arrays import Bool, Float
 from stickslip.results.damper_curve import DamperArrays, DamperCurve
+from stickslip.results.fields import Bool, Float
 from stickslip.results.status import Status
 from stickslip.settings.peaks import DamperKeys, DamperSettings, PeakKeys, PeakSettings
 from stickslip.settings.settings import configured

@@ -13,8 +13,8 @@ from stickslip.disk.wave_ring import moving
 from stickslip.errors import Interrupted, ModelError
 from stickslip.memory import require_memory
 from stickslip.model import Model
-from stickslip.results.arrays import Float
 from stickslip.results.exact_response import ExactResponse, OrbitArrays
+from stickslip.results.fields import Float
 from stickslip.settings.entries import Span
 from stickslip.settings.orbits import ExactSettings, OrbitKeys, OrbitSettings
 from stickslip.settings.settings import configured

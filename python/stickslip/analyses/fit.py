@@ -23,7 +23,7 @@ from stickslip.model.measurement import (
     MeasuredPeak,
     Measurement,
 )
-from stickslip.results.arrays import Float
+from stickslip.results.fields import Float
 from stickslip.results.fit import AGAINST, KINDS, QUANTITIES, Fit, FitArrays
 from stickslip.settings.fit import FitSettings
 from stickslip.settings.settings import configured

@@ -13,7 +13,7 @@ from stickslip.model import Model
 from stickslip.model.contact import Contact
 from stickslip.model.damping import ModalDamping, Rayleigh
 from stickslip.model.structure import Structure
-from stickslip.results.arrays import Float
+from stickslip.results.fields import Float
 
 DAMPING = "damping"
 LEVEL = "level"

@@ -14,7 +14,7 @@ from stickslip.analyses.arguments import require_lowest, require_onset, require_
 from stickslip.analyses.cycle_assumptions import cycle_assumptions
 from stickslip.analyses.run import Progress, Run, refusals
 from stickslip.analyses.variation import variation_of
-from stickslip.checks import brief
+from stickslip.checks import brief, constant
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.model.damping import DampingLaw
@@ -104,8 +104,7 @@ class NegativeDamping:
         matrix = _matrix(given, model)
         if not matrix.any():
             raise ModelError("negative_damping: all zero; without it nothing excites a limit cycle")
-        matrix.flags.writeable = False
-        return cls(matrix, is_proportional(given))
+        return cls(constant(matrix), is_proportional(given))
 
     def cycles(
         self, model: Model, settings: CycleSettings, progress: Progress

@@ -12,7 +12,7 @@ from stickslip.analyses.fit_parameters import FitParameter
 from stickslip.analyses.prediction import Prediction
 from stickslip.model import Model
 from stickslip.model.measurement import Measured
-from stickslip.results.arrays import Bool, Float
+from stickslip.results.fields import Bool, Float
 from stickslip.settings.fit import FitSettings
 
 _INSIDE = 1e-9

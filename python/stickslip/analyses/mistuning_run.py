@@ -5,27 +5,22 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stickslip import _core
-from stickslip.analyses.cluster import Batch, compute_on, computed
+from stickslip.analyses.cluster import Batch, Client, compute_on, computed
 from stickslip.analyses.pattern_store import Key, PatternStore, Row
 from stickslip.analyses.peak_assumptions import mistuning_assumptions
-from stickslip.analyses.run import Run, refusals
+from stickslip.analyses.run import Run
 from stickslip.disk.bladed_disk import BladedDisk
-from stickslip.disk.mistuned import tuned_disk
 from stickslip.errors import ModelError
-from stickslip.results.arrays import Float
+from stickslip.results.fields import Float
 from stickslip.results.mistuning import MistuningArrays, MistuningStudy
 from stickslip.results.status import Status
 from stickslip.settings.peaks import MistuningSettings
-
-if TYPE_CHECKING:
-    # Installed with the extra "dask".
-    from distributed import Client  # type: ignore[import-not-found, unused-ignore]
 
 EDGE = 1e-9
 """How far rounding may put a peak outside the range of frequencies, relative."""
@@ -161,19 +156,7 @@ class Work:
         )
         if client is not None:
             return compute_on(client, computed, work, run, deliver)
-        with refusals(*work.disks):
-            return _core.mistuning_study(
-                [tuned_disk(one) for one in work.disks],
-                work.which,
-                work.deviations,
-                work.groups,
-                self.settings,
-                self.settings,
-                work.orders,
-                threads or 0,
-                deliver,
-                lambda _: run.heed(),
-            )
+        return work.compute(threads or 0, deliver, lambda _: run.heed())
 
     def result(self, seconds: float, *, interrupted: bool) -> MistuningStudy:
         """Return what is there."""

@@ -7,13 +7,13 @@ import os
 import time
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from stickslip import _core
 from stickslip.analyses.arguments import columns_of, known_dofs, require_forced, require_held
+from stickslip.analyses.cluster import Client
 from stickslip.analyses.mistuning_run import Series, Work
 from stickslip.analyses.pattern_store import Identity, PatternStore, Row, digest
 from stickslip.analyses.run import Progress, Run, refusals
@@ -24,15 +24,11 @@ from stickslip.disk.sector import NEXT
 from stickslip.errors import ModelError
 from stickslip.memory import require_numbers
 from stickslip.model import Model
-from stickslip.results.arrays import Float
+from stickslip.results.fields import Float
 from stickslip.results.mistuning import MistuningStudy
 from stickslip.results.status import Status
 from stickslip.settings.peaks import MistuningKeys, MistuningSettings, PeakSettings
 from stickslip.settings.settings import configured
-
-if TYPE_CHECKING:
-    # Installed with the extra "dask".
-    from distributed import Client  # type: ignore[import-not-found, unused-ignore]
 
 
 @configured(MistuningKeys, "deviation")

@@ -17,8 +17,8 @@ from stickslip import _core
 from stickslip.analyses.run import Run
 from stickslip.analyses.texts import told
 from stickslip.model import Model
-from stickslip.results.arrays import Float
 from stickslip.results.diagnostic import Diagnostic, present
+from stickslip.results.fields import Float
 from stickslip.settings.modes import ModeSettings
 
 _CORNERS = 3

@@ -9,9 +9,9 @@ from stickslip.analyses.doubts import doubts, mistuning_unit, structure_doubts
 from stickslip.analyses.texts import told
 from stickslip.checks import listed
 from stickslip.model import Model
-from stickslip.results.arrays import Bool
 from stickslip.results.damper_curve import DamperArrays
 from stickslip.results.diagnostic import Diagnostic, missed_tolerances, present
+from stickslip.results.fields import Bool
 from stickslip.results.mistuning import MistuningArrays
 from stickslip.results.status import Status
 from stickslip.settings.peaks import DamperSettings, MistuningSettings

@@ -21,7 +21,7 @@ from stickslip.model.measurement import (
     MeasuredPeak,
     Measurement,
 )
-from stickslip.results.arrays import Bool, Float
+from stickslip.results.fields import Bool, Float
 from stickslip.results.nonlinear_modes import NonlinearModes
 from stickslip.results.status import Status
 from stickslip.settings.balance import HarmonicSettings

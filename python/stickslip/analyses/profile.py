@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stickslip.analyses.misfit import Evaluation, Misfit
-from stickslip.results.arrays import Bool, Float
+from stickslip.results.fields import Bool, Float
 
 _STEPS = 20
 """Steps to an end of an interval."""

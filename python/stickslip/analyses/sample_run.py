@@ -6,13 +6,13 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from itertools import islice
 from os import cpu_count
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from stickslip import _core
 from stickslip.analyses.arguments import columns_of
-from stickslip.analyses.cluster import compute_on
+from stickslip.analyses.cluster import Client, compute_on
 from stickslip.analyses.fit_parameters import FitParameter
 from stickslip.analyses.nonlinear_modes import nonlinear_modes
 from stickslip.analyses.optimal_damper import optimal_damper
@@ -22,16 +22,12 @@ from stickslip.analyses.stores import Sample, SampleStore
 from stickslip.disk.bladed_disk import BladedDisk
 from stickslip.errors import ModelError
 from stickslip.model import Model
-from stickslip.results.arrays import Float
+from stickslip.results.fields import Float
 from stickslip.results.status import Status
 from stickslip.results.uncertainty import MISTUNING, SampleStatus
 from stickslip.settings.balance import HarmonicSettings
 from stickslip.settings.peaks import PeakSettings
 from stickslip.settings.quantities import Backbone, HighestPeak, Optimum, Quantity
-
-if TYPE_CHECKING:
-    # Installed with the extra "dask".
-    from distributed import Client  # type: ignore[import-not-found, unused-ignore]
 
 RESIDUAL = "residual"
 """The parameter that is the force which stuck contacts hold."""

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import os
 import time
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from stickslip import _core
 from stickslip.analyses.arguments import known_dofs, require_forced, require_held
+from stickslip.analyses.cluster import Client
 from stickslip.analyses.fit_parameters import FitParameter
 from stickslip.analyses.pattern_store import Identity, digest
 from stickslip.analyses.run import Progress, Run
@@ -34,10 +34,6 @@ from stickslip.settings.balance import HarmonicSettings
 from stickslip.settings.quantities import Backbone, HighestPeak, Optimum
 from stickslip.settings.settings import configured
 from stickslip.settings.uncertainty import SampledSettings, UncertaintyKeys, distribution
-
-if TYPE_CHECKING:
-    # Installed with the extra "dask".
-    from distributed import Client  # type: ignore[import-not-found, unused-ignore]
 
 
 @configured(UncertaintyKeys, "parameters", "quantity")

@@ -13,7 +13,7 @@ from stickslip.errors import ModelError
 from stickslip.model import Model, PointRef, natural_frequencies
 from stickslip.model.configurations import every_point
 from stickslip.model.contact import Contact
-from stickslip.results.arrays import Float
+from stickslip.results.fields import Float
 from stickslip.settings.entries import Span
 from stickslip.settings.variation import (
     Chosen,

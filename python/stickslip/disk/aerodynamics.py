@@ -13,7 +13,7 @@ from typing import NamedTuple, Protocol, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.checks import as_list, brief
+from stickslip.checks import as_list, brief, set_fields
 from stickslip.errors import ModelError
 from stickslip.model.structure import Structure
 from stickslip.units import physical_number
@@ -145,9 +145,7 @@ class ModalForces:
             raise ModelError("modal forces: every number must be finite")
         if not (np.diff(speeds) > 0.0).all():
             raise ModelError("modal forces: speeds do not rise; sort them")
-        for name, array in (("speeds", speeds), ("values", values)):
-            array.flags.writeable = False
-            object.__setattr__(self, name, array)
+        set_fields(self, speeds=speeds, values=values)
 
     def at_speed(self, speed: float) -> ModalForces:
         """Return the forces at a speed of rotation [rad/s], linear between two of the speeds.

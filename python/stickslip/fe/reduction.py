@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.checks import Matrix, MatrixLike, whole_number
+from stickslip.checks import Matrix, MatrixLike, constant, whole_number
 from stickslip.errors import ModelError
 from stickslip.fe.reduced_modes import natural_modes, shift_below, springs_of
 from stickslip.fe.sparse import Factor, lowest_modes
@@ -79,7 +79,7 @@ class Reduction:
 
     def _freeze(self) -> None:
         for array in (self.mass, self.stiffness, self.rows, self.omega, self._basis):
-            array.flags.writeable = False
+            constant(array)
 
     def __repr__(self) -> str:
         return (

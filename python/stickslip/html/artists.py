@@ -12,7 +12,7 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 
 from stickslip.html.notation import colour_of, label, scaled
-from stickslip.results.arrays import Float
+from stickslip.results.fields import Float
 
 Trace: TypeAlias = dict[str, Any]
 

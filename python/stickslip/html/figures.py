@@ -25,7 +25,7 @@ from matplotlib.transforms import Transform
 from stickslip.html.artists import Trace, UndrawableError, proxy, traces
 from stickslip.html.notation import label, plain
 from stickslip.plot.style import RESPONSE, Prefixed, fit
-from stickslip.results.arrays import Float
+from stickslip.results.fields import Float
 from stickslip.views.picture import Panel
 
 _SIZE = (7.4, 4.2)

@@ -11,7 +11,7 @@ import numpy as np
 from matplotlib import colors
 
 from stickslip.plot.style import UNSEEN
-from stickslip.results.arrays import Float
+from stickslip.results.fields import Float
 
 _STEPS = 32
 _MATH = re.compile(r"(?<!\\)\$([^$]+)\$")

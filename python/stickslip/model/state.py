@@ -9,7 +9,7 @@ from typing import Self, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.checks import brief, set_fields, unknown
+from stickslip.checks import brief, constant, set_fields, unknown
 from stickslip.errors import ModelError
 from stickslip.model.model import Model, PointRef, require_model
 from stickslip.units import physical_number, without_units
@@ -94,9 +94,7 @@ class State:
     @property
     def vector(self) -> Float:
         """The state as one vector (x, v, f), shape (2 N + n_p,), read-only."""
-        vector = np.concatenate([self.displacement, self.velocity, self.contact_force])
-        vector.flags.writeable = False
-        return vector
+        return constant(np.concatenate([self.displacement, self.velocity, self.contact_force]))
 
     def require_fit(self, model: Model, entry: str) -> None:
         """Refuse a model with other degrees of freedom or another number of contact points."""

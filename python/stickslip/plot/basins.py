@@ -15,9 +15,9 @@ from stickslip.plot import style
 from stickslip.plot.figure import figure
 from stickslip.plot.options import Frame, LineOptions
 from stickslip.plot.style import Looks
-from stickslip.results.arrays import Float
 from stickslip.results.basin_map import BasinMap, Outcome
 from stickslip.results.fate_arrays import Motion
+from stickslip.results.fields import Float
 from stickslip.results.motion_class import MotionClass
 
 _COLOURS = {

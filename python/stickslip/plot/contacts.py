@@ -21,8 +21,8 @@ from stickslip.plot.limits import limit_model
 from stickslip.plot.options import Drawing, ForceOptions, HysteresisOptions, LoopOptions, Swept
 from stickslip.plot.style import Looks
 from stickslip.results import ForcedResponse
-from stickslip.results.arrays import Float
 from stickslip.results.dataset import point_names
+from stickslip.results.fields import Float
 from stickslip.results.static_response import StaticResponse
 
 _FORWARD, _BACKWARD = ("slips forward", style.BLUE), ("slips backward", style.ORANGE)

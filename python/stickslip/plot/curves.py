@@ -24,8 +24,9 @@ from stickslip.plot.limits import force_level, limit_curve, unit_level
 from stickslip.plot.options import CurveOptions, Swept
 from stickslip.plot.style import Colour, Looks, Scale
 from stickslip.results import ForcedResponse
-from stickslip.results.arrays import Float, Measure
+from stickslip.results.arrays import Measure
 from stickslip.results.exact_response import ExactResponse
+from stickslip.results.fields import Float
 
 _MEASURE = {
     "half_range": "half peak-to-peak",

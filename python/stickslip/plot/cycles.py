@@ -15,7 +15,7 @@ from stickslip.plot.arguments import checked_labels, label_of, several
 from stickslip.plot.figure import figure, keywords
 from stickslip.plot.options import CycleOptions, Drawing
 from stickslip.plot.style import Colour, Looks
-from stickslip.results.arrays import Float
+from stickslip.results.fields import Float
 from stickslip.results.limit_cycles import LimitCycles, StabilityMap
 from stickslip.results.stability import STATES, States
 

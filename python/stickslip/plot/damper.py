@@ -15,9 +15,9 @@ from stickslip.plot.figure import figure
 from stickslip.plot.limits import force_level, limit_curve, unit_level
 from stickslip.plot.options import DamperOptions, Frame
 from stickslip.plot.style import Looks, Scale
-from stickslip.results.arrays import Float, Int
 from stickslip.results.damper_curve import DamperCurve
 from stickslip.results.design_map import DesignMap
+from stickslip.results.fields import Float, Int
 
 
 @figure

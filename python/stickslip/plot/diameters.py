@@ -19,7 +19,7 @@ from stickslip.plot import style
 from stickslip.plot.figure import figure
 from stickslip.plot.options import DiameterOptions, Drawing, Frame, LimitOptions, SafeOptions
 from stickslip.plot.style import Looks, Scale
-from stickslip.results.arrays import Float
+from stickslip.results.fields import Float
 from stickslip.results.flutter_map import FlutterMap
 from stickslip.results.stability import STATES
 from stickslip.units import physical_number

@@ -11,7 +11,8 @@ from stickslip.errors import ModelError
 from stickslip.model import Model, natural_frequencies
 from stickslip.model.damping import held_stiffness
 from stickslip.model.structure import Structure
-from stickslip.results.arrays import Float, Measure
+from stickslip.results.arrays import Measure
+from stickslip.results.fields import Float
 
 _POINTS = 400
 # Points beside each resonance, so that a damping ratio down to 1e-4 still shows its peak.

@@ -14,7 +14,7 @@ from stickslip.plot import style
 from stickslip.plot.figure import figure
 from stickslip.plot.options import DistributionOptions, TrendOptions
 from stickslip.plot.style import Colour, Looks
-from stickslip.results.arrays import Float
+from stickslip.results.fields import Float
 from stickslip.results.mistuning import MistuningStudy
 from stickslip.results.weibull import FEWEST, empirical_percentile
 

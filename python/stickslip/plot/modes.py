@@ -14,7 +14,7 @@ from stickslip.plot.arguments import checked_labels, several
 from stickslip.plot.figure import keywords
 from stickslip.plot.options import BackboneOptions, DampingOptions
 from stickslip.plot.style import Colour, Looks
-from stickslip.results.arrays import Float
+from stickslip.results.fields import Float
 from stickslip.results.nonlinear_modes import NonlinearModes
 
 _AMPLITUDE = r"modal amplitude [m kg$^{1/2}$]"

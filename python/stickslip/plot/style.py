@@ -25,7 +25,7 @@ from matplotlib.ticker import (
 from stickslip.checks import brief
 from stickslip.disk.bladed_disk import rotor_order
 from stickslip.errors import ModelError
-from stickslip.results.arrays import Bool, Float
+from stickslip.results.fields import Bool, Float
 from stickslip.results.stability import STATES, States
 
 OmegaUnit: TypeAlias = Literal["rad/s", "Hz", "rpm"]

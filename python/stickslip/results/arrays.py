@@ -4,37 +4,16 @@ from __future__ import annotations
 
 import json
 from functools import cached_property
-from typing import Any, Literal, Self, TypeAlias, TypeVar
+from typing import Any, Literal, Self, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stickslip import _core
-from stickslip.checks import whole_number
+from stickslip.checks import constant, whole_number
 from stickslip.results.dataset import Stored
 from stickslip.results.fields import Bool, Code, Columns, Complex, Computed, Float, Int, column
 from stickslip.results.status import Status
-
-__all__ = [
-    "SHARE",
-    "STABILITY",
-    "UNIQUE",
-    "Arrays",
-    "Bool",
-    "Code",
-    "Complex",
-    "ExactColumns",
-    "Float",
-    "Int",
-    "Measure",
-    "PeriodicArrays",
-    "amplitude_in",
-    "amplitude_of",
-    "constant",
-    "mean_forces",
-]
-
-Kind = TypeVar("Kind", bound=np.generic)
 
 Measure: TypeAlias = Literal["half_range", "max", "fundamental"]
 """Half the peak-to-peak range over a period, the largest |x|, or |X_1|."""
@@ -263,9 +242,3 @@ _SOLVED[[one.code for one in Status if one.solved]] = True
 
 def _solved(status: Code) -> Bool:
     return constant(_SOLVED[status])
-
-
-def constant(array: NDArray[Kind]) -> NDArray[Kind]:
-    """Make an array read-only, in place, and return it."""
-    array.flags.writeable = False
-    return array

@@ -9,14 +9,14 @@ from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 
-from stickslip.checks import whole_number
+from stickslip.checks import constant, whole_number
 from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.model.state import State
-from stickslip.results.arrays import Float, Int, constant
 from stickslip.results.dataset import Stored, labels
 from stickslip.results.fate_arrays import FateArrays, Motion, Reason
+from stickslip.results.fields import Float, Int
 from stickslip.results.result import ColumnResult
 from stickslip.settings.motion import BasinSettings
 

@@ -7,12 +7,13 @@ from typing import NamedTuple, Self, TypeAlias
 
 import numpy as np
 
-from stickslip.checks import brief, text, unknown
+from stickslip.checks import brief, constant, text, unknown
 from stickslip.disk import BladedDisk, MistunedDisk
 from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
-from stickslip.results.arrays import Float, Measure, constant
+from stickslip.results.arrays import Measure
 from stickslip.results.contact_motion import ContactMotion
+from stickslip.results.fields import Float
 from stickslip.results.peaks import Peak
 
 SectorDof: TypeAlias = str

@@ -8,9 +8,11 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.checks import constant
 from stickslip.errors import ModelError
-from stickslip.results.arrays import UNIQUE, Bool, Float, constant
+from stickslip.results.arrays import UNIQUE
 from stickslip.results.contact_motion import ContactMotion
+from stickslip.results.fields import Bool, Float
 from stickslip.results.peaks import Peak, highest_of
 
 

@@ -9,11 +9,10 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from stickslip.checks import text, unknown
+from stickslip.checks import constant, text, unknown
 from stickslip.errors import ModelError
-from stickslip.results.arrays import Bool, Code, Float, Int, constant
 from stickslip.results.dataset import Stored, labels
-from stickslip.results.fields import Columns, column
+from stickslip.results.fields import Bool, Code, Columns, Float, Int, column
 from stickslip.results.status import Status
 
 ROUNDING = 1e-9

@@ -17,8 +17,8 @@ from stickslip.fe.interface import ContactInterface
 from stickslip.fe.vtu import write_vtu
 from stickslip.model import ContactRef
 from stickslip.model.contact import OPEN
-from stickslip.results.arrays import Float
 from stickslip.results.contact_motion import ContactMotion
+from stickslip.results.fields import Float
 from stickslip.results.static_response import StaticResponse
 
 MapField: TypeAlias = Literal[

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from stickslip import _core
-from stickslip.checks import whole_number
+from stickslip.checks import constant, whole_number
 from stickslip.errors import ModelError
 from stickslip.model import ContactRef, Coulomb, PointRef
-from stickslip.results.arrays import Complex, Float, amplitude_of, constant, mean_forces
+from stickslip.results.arrays import amplitude_of, mean_forces
 from stickslip.results.events import ContactStates, states_at
+from stickslip.results.fields import Complex, Float
 from stickslip.results.peaks import Peaks
 
 if TYPE_CHECKING:

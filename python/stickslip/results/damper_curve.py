@@ -8,13 +8,14 @@ from typing import ClassVar, NamedTuple, Self
 
 import numpy as np
 
+from stickslip.checks import constant
 from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
 from stickslip.model import Model
-from stickslip.results.arrays import UNIQUE, Bool, Code, Float, Int, constant
+from stickslip.results.arrays import UNIQUE
 from stickslip.results.bounded import ResidualBounds
 from stickslip.results.dataset import Stored
-from stickslip.results.fields import Columns, Shown, column
+from stickslip.results.fields import Bool, Code, Columns, Float, Int, Shown, column
 from stickslip.results.result import ColumnResult
 from stickslip.results.status import Status
 from stickslip.settings.peaks import DamperSettings

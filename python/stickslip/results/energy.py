@@ -6,8 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stickslip.checks import constant
 from stickslip.errors import ModelError
-from stickslip.results.arrays import Float, constant
+from stickslip.results.fields import Float
 from stickslip.results.periodic import Sweep
 
 

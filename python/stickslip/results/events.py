@@ -9,9 +9,10 @@ from typing import NamedTuple, overload
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.checks import constant
 from stickslip.model import Model
 from stickslip.model.contact import OPEN, Contact
-from stickslip.results.arrays import Float, Int, constant
+from stickslip.results.fields import Float, Int
 
 KINDS = ("sticks", "slips forward", "slips backward", "opens", "slides")
 """What happens, by the code that the core and files have; forward is du/dt > 0, and a node that

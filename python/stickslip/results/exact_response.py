@@ -11,28 +11,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip import _core
-from stickslip.checks import whole_number
+from stickslip.checks import constant, whole_number
 from stickslip.disk.wave_ring import Rotation, moving
 from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
 from stickslip.model import ContactRef, PointRef
 from stickslip.model.model import Model, refusal
 from stickslip.model.state import State
-from stickslip.results.arrays import (
-    STABILITY,
-    Arrays,
-    Code,
-    ExactColumns,
-    Float,
-    Int,
-    Measure,
-    amplitude_in,
-    constant,
-)
+from stickslip.results.arrays import STABILITY, Arrays, ExactColumns, Measure, amplitude_in
 from stickslip.results.dataset import Stored
 from stickslip.results.energy import Energy, apparent_work
 from stickslip.results.events import KINDS, ContactStates, Events, states_of
-from stickslip.results.fields import Computed, column
+from stickslip.results.fields import Code, Computed, Float, Int, column
 from stickslip.results.forced_response import ForcedResponse
 from stickslip.results.peaks import RIVAL, Peak, highest, of_orbits
 from stickslip.results.periodic import key_of

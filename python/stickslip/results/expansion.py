@@ -16,10 +16,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from stickslip.checks import optional_package, whole_number
+from stickslip.checks import constant, optional_package, whole_number
 from stickslip.errors import ModelError
-from stickslip.results.arrays import Float, Int, constant
 from stickslip.results.documented import Frozen
+from stickslip.results.fields import Float, Int
 from stickslip.results.weibull import Estimate, confidence_of, share_of
 
 if TYPE_CHECKING:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from enum import StrEnum
 from typing import Self
 
-from stickslip.results.arrays import SHARE, Code, Float, Int
-from stickslip.results.fields import Columns, column
+from stickslip.results.arrays import SHARE
+from stickslip.results.fields import Code, Columns, Float, Int, column
 from stickslip.results.status import Ending
 
 

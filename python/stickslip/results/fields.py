@@ -29,6 +29,7 @@ from typing import (
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.checks import set_fields
 from stickslip.results.dataset import Stored
 
 Bool: TypeAlias = NDArray[np.bool_]
@@ -144,9 +145,7 @@ class Columns:
 
     def __post_init__(self) -> None:
         for name in self.table():
-            array = np.ascontiguousarray(getattr(self, name))
-            array.flags.writeable = False
-            object.__setattr__(self, name, array)
+            set_fields(self, **{name: np.ascontiguousarray(getattr(self, name))})
 
     def __reduce__(self) -> tuple[Callable[[], Self], tuple[()]]:
         # Unpickled arrays would be writeable; going through the constructor makes them constant.

@@ -10,12 +10,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from stickslip.checks import unknown
+from stickslip.checks import constant, unknown
 from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
-from stickslip.results.arrays import Bool, Code, Float, Int, constant
 from stickslip.results.dataset import Stored, labels
-from stickslip.results.fields import Columns, column
+from stickslip.results.fields import Bool, Code, Columns, Float, Int, column
 from stickslip.results.result import Attributes, ColumnResult
 from stickslip.settings.fit import FitSettings
 

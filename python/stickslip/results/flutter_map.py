@@ -8,11 +8,10 @@ from typing import Any, ClassVar, Literal, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.checks import brief, choice, whole_number
+from stickslip.checks import brief, choice, constant, whole_number
 from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
-from stickslip.results.arrays import Float, Int, constant
-from stickslip.results.fields import Columns, Complex, Shown, column
+from stickslip.results.fields import Columns, Complex, Float, Int, Shown, column
 from stickslip.results.result import ColumnResult
 from stickslip.settings.modes import FlutterSettings
 

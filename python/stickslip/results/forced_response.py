@@ -9,13 +9,15 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.checks import constant
 from stickslip.drawn import Drawn
-from stickslip.results.arrays import STABILITY, Int, constant
+from stickslip.results.arrays import STABILITY
 from stickslip.results.blades import BladeMotion
 from stickslip.results.bounded import Bounded
 from stickslip.results.certificate import Certificate
 from stickslip.results.dataset import Stored
 from stickslip.results.energy import Energy, energy_of
+from stickslip.results.fields import Int
 from stickslip.results.sensitivities import Sensitivities
 from stickslip.results.stability import States, truths
 

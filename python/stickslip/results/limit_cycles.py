@@ -9,25 +9,21 @@ from typing import Any, ClassVar, NamedTuple, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.checks import choice
+from stickslip.checks import choice, constant
 from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
 from stickslip.model import Model
 from stickslip.model.destabilised import destabilised
 from stickslip.model.state import State
 from stickslip.results.arrays import (
-    Bool,
     ExactColumns,
-    Float,
-    Int,
     Measure,
     PeriodicArrays,
     amplitude_in,
     amplitude_of,
-    constant,
     period_of,
 )
-from stickslip.results.fields import Columns, Numbers, Shown, column
+from stickslip.results.fields import Bool, Columns, Float, Int, Numbers, Shown, column
 from stickslip.results.periodic import PeriodicMotions
 from stickslip.results.result import ColumnResult
 from stickslip.results.stability import FloquetStability, stability_counts

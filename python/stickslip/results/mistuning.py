@@ -9,12 +9,11 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.checks import choice, real_number, unknown
+from stickslip.checks import choice, constant, real_number, unknown
 from stickslip.drawn import Axes, Drawn, plots
 from stickslip.errors import ModelError
-from stickslip.results.arrays import Bool, Code, Float, Int, constant
 from stickslip.results.blades import SectorDof
-from stickslip.results.fields import Columns, Shown, column
+from stickslip.results.fields import Bool, Code, Columns, Float, Int, Shown, column
 from stickslip.results.result import ColumnResult
 from stickslip.results.status import Status
 from stickslip.results.weibull import Percentile, WeibullFit, empirical_percentile, fit_weibull
@@ -111,10 +110,7 @@ class MistuningStudy(ColumnResult):
     @cached_property
     def status(self) -> NDArray[np.object_]:
         """How each search ended, shape (d, c, p, q); `Status`, with its advice."""
-        known = np.array(list(Status), dtype=object)
-        status: NDArray[np.object_] = known[self.arrays.status]
-        status.setflags(write=False)
-        return status
+        return Status.array(self.arrays.status)
 
     def amplification(self, dof: SectorDof) -> Float:
         """Return amplification factors, shape (d, c, p); not-a-number if not found."""

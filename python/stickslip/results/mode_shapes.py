@@ -9,20 +9,12 @@ from typing import TYPE_CHECKING, ClassVar, Protocol, get_args
 
 import numpy as np
 
-from stickslip.checks import choice
+from stickslip.checks import choice, constant
 from stickslip.errors import ModelError
 from stickslip.model import Model
-from stickslip.results.arrays import (
-    Complex,
-    Float,
-    Int,
-    Measure,
-    PeriodicArrays,
-    amplitude_of,
-    constant,
-)
+from stickslip.results.arrays import Measure, PeriodicArrays, amplitude_of
 from stickslip.results.dataset import Stored
-from stickslip.results.fields import column
+from stickslip.results.fields import Complex, Float, Int, column
 from stickslip.settings.modes import ModeSettings
 
 if TYPE_CHECKING:

@@ -9,14 +9,14 @@ from typing import Any, ClassVar, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
-from stickslip.checks import MatrixLike, choice
+from stickslip.checks import MatrixLike, choice, constant
 from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
 from stickslip.model.damping import DampingLaw
 from stickslip.model.destabilised import negative_matrix
 from stickslip.model.force import Force
-from stickslip.results.arrays import Float, Int, Measure, amplitude_of, constant, period_of
-from stickslip.results.fields import Shown
+from stickslip.results.arrays import Measure, amplitude_of, period_of
+from stickslip.results.fields import Float, Int, Shown
 from stickslip.results.mode_shapes import ModeArrays
 from stickslip.results.periodic import PeriodicMotions
 from stickslip.results.synthesis import (

@@ -15,7 +15,8 @@ from stickslip.checks import brief, choice
 from stickslip.disk.wave_ring import moving
 from stickslip.errors import ModelError
 from stickslip.model.model import refusal
-from stickslip.results.arrays import Bool, Float, Int, Measure
+from stickslip.results.arrays import Measure
+from stickslip.results.fields import Bool, Float, Int
 from stickslip.results.periodic import Sweep, key_of
 from stickslip.results.status import Status
 

@@ -10,22 +10,11 @@ from typing import Any, ClassVar, get_args
 
 import numpy as np
 
-from stickslip.checks import brief, choice, text, whole_number
+from stickslip.checks import brief, choice, constant, text, whole_number
 from stickslip.errors import ModelError
 from stickslip.model import PointRef
-from stickslip.results.arrays import (
-    Arrays,
-    Bool,
-    Complex,
-    Float,
-    Int,
-    Measure,
-    PeriodicArrays,
-    amplitude_of,
-    constant,
-    period_of,
-)
-from stickslip.results.fields import Shown
+from stickslip.results.arrays import Arrays, Measure, PeriodicArrays, amplitude_of, period_of
+from stickslip.results.fields import Bool, Complex, Float, Int, Shown
 from stickslip.results.result import Attributes, ColumnResult
 from stickslip.results.status import Status
 from stickslip.settings.balance import ForcedSettings

@@ -16,11 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip import _core
-from stickslip.checks import text, unknown
+from stickslip.checks import constant, text, unknown
 from stickslip.drawn import InNotebooks
 from stickslip.errors import ModelError
 from stickslip.model import Model, PointRef
-from stickslip.results.arrays import constant
 from stickslip.results.dataset import (
     Dataset,
     Record,

@@ -7,11 +7,12 @@ from typing import TypeAlias, overload
 import numpy as np
 
 from stickslip import _core
-from stickslip.checks import listed, text, unknown
+from stickslip.checks import constant, listed, text, unknown
 from stickslip.errors import ModelError
 from stickslip.model import Model, PointRef
-from stickslip.results.arrays import Arrays, Float, Measure, amplitude_of, constant
+from stickslip.results.arrays import Arrays, Measure, amplitude_of
 from stickslip.results.contact_motion import ContactMotion
+from stickslip.results.fields import Float
 from stickslip.results.peaks import Peak
 from stickslip.results.periodic import key_of
 from stickslip.settings.balance import BalanceSettings

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from stickslip.results.arrays import Float, constant
+from stickslip.checks import constant
+from stickslip.results.fields import Float
 
 
 class Spectrum(NamedTuple):

@@ -10,7 +10,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.results.arrays import Bool, Complex, ExactColumns, Int, constant
+from stickslip.checks import constant
+from stickslip.results.arrays import ExactColumns
+from stickslip.results.fields import Bool, Complex, Int
 
 States = NDArray[np.str_]
 """A name of `STATES` per motion."""

@@ -6,10 +6,10 @@ from typing import ClassVar
 
 import numpy as np
 
+from stickslip.checks import constant
 from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
 from stickslip.model import ContactRef, PointRef
-from stickslip.results.arrays import constant
 from stickslip.results.fields import Code, Columns, Float, column
 from stickslip.results.result import ColumnResult
 from stickslip.results.status import RestStatus

@@ -5,6 +5,10 @@ from __future__ import annotations
 from enum import StrEnum
 from typing import NamedTuple, Self
 
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.checks import constant
 from stickslip.errors import ModelError
 
 
@@ -28,6 +32,11 @@ class Ending(StrEnum):
         if not 0 <= code < len(members):
             raise ModelError(f"status {code} is unknown; known: 0 to {len(members) - 1}")
         return members[code]
+
+    @classmethod
+    def array(cls, codes: NDArray[np.integer]) -> NDArray[np.object_]:
+        """Return the members that the core writes as these numbers, shape of `codes`."""
+        return constant(np.array(tuple(cls), dtype=object)[codes])
 
     @property
     def code(self) -> int:

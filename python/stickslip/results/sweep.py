@@ -12,7 +12,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from stickslip import _core
-from stickslip.checks import real_number
+from stickslip.checks import constant, real_number
 from stickslip.drawn import Axes, Drawn, plots
 from stickslip.errors import ModelError
 from stickslip.model import Model
@@ -67,9 +67,7 @@ class Sweep(Result):
     @cached_property
     def values(self) -> Float:
         """Values of the parameter, shape (n,)."""
-        found: Float = np.array(self.settings.values[: len(self.results)])
-        found.flags.writeable = False
-        return found
+        return constant(np.array(self.settings.values[: len(self.results)]))
 
     @property
     def labels(self) -> tuple[str, ...]:

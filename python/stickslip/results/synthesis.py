@@ -17,9 +17,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stickslip.checks import brief, unknown
+from stickslip.checks import brief, constant, unknown
 from stickslip.errors import ModelError
-from stickslip.results.arrays import Bool, Complex, Float, constant
+from stickslip.results.fields import Bool, Complex, Float
 from stickslip.results.mode_shapes import Mode, ModeMotions, ModeShapes, left_out
 
 

@@ -10,13 +10,12 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.checks import unknown
+from stickslip.checks import constant, unknown
 from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
-from stickslip.results.arrays import Bool, Code, Float, constant
 from stickslip.results.dataset import Stored, labels
 from stickslip.results.expansion import Expansion, SobolIndices, fit_expansion
-from stickslip.results.fields import Columns, column
+from stickslip.results.fields import Bool, Code, Columns, Float, column
 from stickslip.results.result import ColumnResult
 from stickslip.results.status import Ending
 from stickslip.results.weibull import empirical_percentile
@@ -127,10 +126,7 @@ class Uncertainty(ColumnResult):
     @cached_property
     def status(self) -> NDArray[np.object_]:
         """How each sample ended, shape (n,); `SampleStatus`, with its advice."""
-        known = np.array(list(SampleStatus), dtype=object)
-        status: NDArray[np.object_] = known[self.arrays.status]
-        status.setflags(write=False)
-        return status
+        return SampleStatus.array(self.arrays.status)
 
     def values(self, number: str) -> Float:
         """Return a number of all samples, shape (n,); not-a-number where it was not found.

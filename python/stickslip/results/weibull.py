@@ -18,10 +18,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from stickslip.checks import real_number, whole_number
+from stickslip.checks import constant, real_number, whole_number
 from stickslip.errors import ModelError
-from stickslip.results.arrays import Float, constant
 from stickslip.results.documented import Frozen
+from stickslip.results.fields import Float
 from stickslip.results.weibull_likelihood import best_fit, excess_at_no_limit, interval
 
 FEWEST = 30

@@ -12,7 +12,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.results.arrays import Float
+from stickslip.results.fields import Float
 
 _SHAPES = (1.0, 500.0)
 """Bounds of the shape: below 1 the likelihood has no maximum; at 500 no limit can be told."""

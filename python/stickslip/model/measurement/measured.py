@@ -10,7 +10,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.checks import real_array, set_fields, text
+from stickslip.checks import constant, real_array, set_fields, text
 from stickslip.errors import EntryError, ModelError
 from stickslip.model.model import Model, require_model
 from stickslip.units import physical_number, without_units
@@ -111,8 +111,7 @@ def real_numbers(
     if bad.size:
         more = "" if above == -np.inf else f" above {above:g}"
         raise ModelError(f"{entry}[{bad[0]}] is {found[bad[0]]:g}; give finite numbers{more}")
-    found.flags.writeable = False
-    return found
+    return constant(found)
 
 
 def above_zero(value: float | None, unit: str, entry: str) -> float | None:
