@@ -17,8 +17,8 @@ from small_study import ANALYSIS, ONE_CONTACT, ONE_FORCE, SMALL, STRUCTURE
 pytest.importorskip("tomlkit")
 pytest.importorskip("tornado")
 
-from stickslip.explore import knobs, panes
-from stickslip.explore.draft import Draft
+from stickslip.explore import panes
+from stickslip.explore.draft import MOST, Draft
 from stickslip.explore.session import Session
 
 # the page marks these peaks, as the command does
@@ -140,7 +140,7 @@ def test_contacts_are_told_apart_and_loads_at_rest_can_be_moved(draft):
 
 def test_a_page_has_no_end_of_sliders(draft):
     many = STRUCTURE + 60 * ONE_CONTACT + ONE_FORCE + ANALYSIS
-    assert len(draft(many).knobs) == knobs.MOST
+    assert len(draft(many).knobs) == MOST
 
 
 def test_a_study_without_a_curve_is_refused():

@@ -23,8 +23,7 @@ from stickslip.checks import (
     whole_number,
 )
 from stickslip.errors import ModelError
-from stickslip.fe.faces import outside, tables
-from stickslip.fe.overlap import distinct
+from stickslip.fe.faces import distinct, outside, tables
 from stickslip.fe.reduced_modes import natural_modes
 from stickslip.fe.reduction import Reduction
 from stickslip.fe.solid import Solid

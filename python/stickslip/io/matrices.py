@@ -1,11 +1,16 @@
-"""Matrices from files: one reader per format, chosen by the ending of the name."""
+"""Matrices from files: one reader per format, chosen by the ending of the name.
+
+NumPy's files are looked at before NumPy makes room for what they announce.
+"""
 
 from __future__ import annotations
 
+import math
 import os
+import zipfile
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias, overload
+from typing import IO, TYPE_CHECKING, Any, Literal, TypeAlias, overload
 
 import numpy as np
 
@@ -20,6 +25,7 @@ from stickslip.checks import (
     unknown,
 )
 from stickslip.errors import ModelError
+from stickslip.io import source
 from stickslip.io.abaqus import read_abaqus, read_calculix, read_calculix_dofs
 from stickslip.io.ansys import read_ansys, read_mapping, with_mapping
 from stickslip.io.curve import read_table
@@ -28,12 +34,76 @@ from stickslip.io.entries import Labelled, require_size
 from stickslip.io.harwell_boeing import read_harwell_boeing
 from stickslip.io.matlab import read_matlab
 from stickslip.io.matrix_market import read_matrix_market
-from stickslip.io.npz import read_numpy
 from stickslip.io.op4 import read_op4
 from stickslip.io.source import Key, plain, readable
 
 if TYPE_CHECKING:
     from scipy.sparse import csc_array
+
+
+_HEADERS = {
+    (1, 0): np.lib.format.read_array_header_1_0,
+    (2, 0): np.lib.format.read_array_header_2_0,
+}
+
+
+def read_numpy(file: Path, key: Key) -> object:
+    """Read a matrix of `.npy` or `.npz`, of NumPy or of SciPy's sparse matrices.
+
+    An array must have the bytes that its header announces, and a name of its own.
+    """
+    with file.open("rb") as stream:
+        _require_sound(stream)
+        loaded = np.load(stream, allow_pickle=False)
+        if isinstance(loaded, np.ndarray):
+            key.refuse()
+            return loaded
+        if {"format", "shape", "data"} <= set(loaded.files):
+            from scipy.sparse import load_npz
+
+            key.refuse()
+            stream.seek(0)
+            return load_npz(stream)
+        return loaded[key.among(loaded.files)]
+
+
+def _require_sound(stream: IO[bytes]) -> None:
+    """Check `.npy` and `.npz`, and go back to the beginning."""
+    if stream.read(2) == b"PK":
+        with zipfile.ZipFile(stream) as archive:
+            if len(set(archive.namelist())) < len(archive.namelist()):
+                raise ValueError("two arrays have the same name")
+            for member in archive.infolist():
+                name, size = member.filename, member.file_size
+                packed = member.compress_type != zipfile.ZIP_STORED
+                if size > source.LARGEST_UNPACKED and packed:
+                    raise ValueError(f"{name!r} unpacks to {size} bytes; save it unpacked")
+                if name.endswith(".npy"):
+                    with archive.open(member) as array:
+                        count = _require_held(array, size)
+                    if packed:
+                        source.require_room(name, count)
+    else:
+        size = stream.seek(0, os.SEEK_END)
+        stream.seek(0)
+        _require_held(stream, size)
+    stream.seek(0)
+
+
+def _require_held(stream: IO[bytes], size: int) -> int:
+    """Compare the header of an array with the bytes that follow; return how many numbers it has."""
+    version = np.lib.format.read_magic(stream)
+    if version not in _HEADERS:
+        raise ValueError(f"an array of format {version}")
+    shape, _, dtype = _HEADERS[version](stream)
+    if any(isinstance(one, bool) or one < 0 for one in shape):
+        raise ValueError(f"an array of shape {shape}; the file is damaged")
+    announced, held = math.prod(shape) * dtype.itemsize, size - stream.tell()
+    # NumPy refuses objects by itself.
+    if not dtype.hasobject and announced != held:
+        raise ValueError(f"shape {shape} takes {announced} bytes, {held} are there")
+    return math.prod(shape)
+
 
 _Reader: TypeAlias = Callable[[Path, Key], object]
 

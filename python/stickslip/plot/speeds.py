@@ -1,4 +1,4 @@
-"""Responses along the speed of rotation."""
+"""Responses and natural frequencies along the speed of rotation."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ from stickslip.errors import ModelError
 from stickslip.plot import style
 from stickslip.plot.arguments import checked_labels, several
 from stickslip.plot.figure import figure
-from stickslip.plot.options import SpeedOptions
+from stickslip.plot.options import CampbellOptions, SpeedOptions
+from stickslip.plot.style import Looks
 from stickslip.results.campbell import Campbell
 from stickslip.results.speed_response import SpeedResponse
 
@@ -62,3 +63,64 @@ def _mark_resonances(
                 at = style.OMEGA["rpm"].factor * one.speed
                 ax.axvline(at, color=colour, lw=1.0, ls=line, label=label, zorder=1.5)
                 label = "_"
+
+
+_MARGIN = 1.15
+"""How far the diagram reaches above the highest excitation."""
+
+
+@figure
+def campbell(ax: Axes, /, result: Campbell, **options: Unpack[CampbellOptions]) -> None:
+    """Draw natural frequencies over the speed of rotation, and the lines of engine orders.
+
+    Of a disk the modes of the nodal diameters are drawn that the orders excite. Only modes that the
+    highest order comes near are drawn.
+
+    Parameters
+    ----------
+    result : Campbell
+        What `campbell` returned.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes. Circles mark resonances with all contacts stuck.
+    """
+    omega, orders = style.OMEGA[options["omega_unit"]], result.orders
+    rising = np.argsort(result.speed)
+    x = result.speed[rising] * style.OMEGA["rpm"].factor
+    top = _MARGIN * max(orders) * float(result.speed.max())
+    places = sorted({result.place(order) for order in orders})
+    ends = np.array([0.0, x.max()])
+    lines: Looks = {"color": "crimson", "lw": 0.8, "zorder": 1.8}
+    for order in orders:
+        ax.plot(ends, omega.factor * order * ends / style.OMEGA["rpm"].factor, **lines)
+        ax.annotate(
+            f"EO {order}",
+            (x.max(), omega.factor * order * result.speed.max()),
+            (-4.0, 3.0),
+            textcoords="offset points",
+            ha="right",
+            color="crimson",
+            fontsize="small",
+        )
+    several = len(result.diameter) > 1
+    slips = options["slipping"] and bool(result.model.contacts)
+    for place, colour in zip(places, style.colours(len(places)), strict=True):
+        of = f"nodal diameter {result.diameter[place]}" if several else "natural frequencies"
+        label = f"{of}, stuck" if slips else of
+        for which, values in enumerate((result.stuck, result.slipping)[: 1 + slips]):
+            name = label if not which else f"{of}, slipping"
+            looks: Looks = {"color": colour, "ls": (style.STUCK, style.FREE)[which], "lw": 1.3}
+            own = values[rising, place]
+            for curve in own.T[own.min(axis=0) <= top]:
+                ax.plot(x, omega.factor * curve, label=name, **looks)
+                name = "_"
+    found = result.crossings()
+    if found:
+        at = [one.speed * style.OMEGA["rpm"].factor for one in found]
+        height = [omega.factor * one.omega for one in found]
+        ax.plot(at, height, **style.mark("o", 5, "crimson"), label="resonances" + ", stuck" * slips)
+    ax.set(xlim=(min(0.98 * x.min(), x.max()), x.max()), ylim=(0.0, omega.factor * top))
+    ax.set(xlabel="rotor speed [rpm]")
+    ax.set_ylabel(omega.label.replace("angular frequency ω", "natural frequency"))

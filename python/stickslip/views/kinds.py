@@ -29,15 +29,15 @@ VIEWS: Mapping[str, tuple[str, str]] = {
     "motion_class": ("stickslip.views.motions", "MotionView"),
     "basin_map": ("stickslip.views.motions", "BasinView"),
     "mistuning_study": ("stickslip.views.mistuning", "MistuningView"),
-    "static_response": ("stickslip.views.statics", "StaticView"),
+    "static_response": ("stickslip.views.transients", "StaticView"),
     "fit": ("stickslip.views.fits", "FitView"),
     "uncertainty": ("stickslip.views.uncertainty", "UncertaintyView"),
     "limit_cycles": ("stickslip.views.cycles", "CycleView"),
-    "campbell": ("stickslip.views.campbell", "CampbellView"),
+    "campbell": ("stickslip.views.speeds", "CampbellView"),
     "speed_response": ("stickslip.views.speeds", "SpeedView"),
     "sweep": ("stickslip.views.sweeps", "SweepView"),
     "stability_map": ("stickslip.views.cycles", "MapView"),
-    "flutter_map": ("stickslip.views.flutter", "FlutterView"),
+    "flutter_map": ("stickslip.views.cycles", "FlutterView"),
     "nonlinear_modes": ("stickslip.views.modes", "ModeView"),
 }
 """Module and class of the view of every kind; results of one view are drawn together."""
