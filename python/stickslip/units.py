@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stickslip.checks import brief, real_number, vanished
-from stickslip.errors import EntryError
+from stickslip.errors import EntryError, ModelError
 
 if TYPE_CHECKING:
     from pint import UnitRegistry
@@ -125,6 +125,21 @@ def physical_number(value: object, unit: str, entry: str, *, finite: bool = True
     if _has_unit(value):
         return quantity(value, unit, entry, finite=finite)  # type: ignore[arg-type]
     return real_number(value, entry, finite=finite)
+
+
+def from_zero(
+    value: object,
+    unit: str,
+    entry: str,
+    remedy: str = "a number from zero, in SI units",
+    *,
+    finite: bool = True,
+) -> float:
+    """Return a number that is not negative; see `physical_number`."""
+    number = physical_number(value, unit, entry, finite=finite)
+    if number < 0.0:
+        raise ModelError(f"{entry} {number:g} is negative; give {remedy}")
+    return number
 
 
 def without_units(values: Any, unit: str, entry: str) -> Any:

@@ -91,6 +91,11 @@ NUMBERS = {"stiffness": 1.0, "slip_force": 1.0}
         (lambda: ss.Iwan("x", **NUMBERS, chi=0.2), "chi 0.2 is outside -1 < chi <= 0"),
         (lambda: ss.Iwan("x", **NUMBERS, chi=-0.5, beta=-1), "beta -1 is negative"),
         (lambda: ss.Iwan("x", stiffness=-1, slip_force=1.0, chi=0), "stiffness -1 is negative"),
+        (
+            lambda: ss.Iwan("x", stiffness="-1 kN/m", slip_force=1.0, chi=0),
+            "stiffness -1000 is negative",
+        ),
+        (lambda: ss.Iwan("x", **NUMBERS, chi="20 %"), "chi 0.2 is outside -1 < chi <= 0"),
         (lambda: ss.Masing("x", **NUMBERS, backbone="dahl"), "backbone 'dahl' is unknown"),
         (lambda: ss.Masing("x", stiffness=1.0, backbone="exponential"), "slip_force is missing"),
         (lambda: ss.Masing("x", **NUMBERS, backbone="shear-layer"), "shear_lag None"),

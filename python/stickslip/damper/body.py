@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from stickslip.checks import brief, members, real_matrix, set_fields, text
 from stickslip.errors import ModelError
 from stickslip.model.structure import Structure
-from stickslip.units import physical_number
+from stickslip.units import from_zero, physical_number
 
 Sum: TypeAlias = dict[str, float]
 """Factors of degrees of freedom, whose sum is a displacement."""
@@ -44,7 +44,7 @@ class Centrifugal:
 
     def __post_init__(self) -> None:
         for name, unit in (("radius", "m"), ("speed", "rad/s")):
-            number = positive(getattr(self, name), unit, f"centrifugal load: {name}")
+            number = from_zero(getattr(self, name), unit, f"centrifugal load: {name}")
             set_fields(self, **{name: number})
 
     def force(self, mass: float) -> float:
@@ -160,7 +160,7 @@ class RigidBody:
         entry = "rigid body"
         forces = _vector(load, "N", f"{entry}: load")
         turns = None if inertia is None else _inertia(inertia, len(forces))
-        set_fields(self, mass=positive(mass, "kg", f"{entry}: mass"), load=forces, inertia=turns)
+        set_fields(self, mass=from_zero(mass, "kg", f"{entry}: mass"), load=forces, inertia=turns)
 
     @property
     def axes(self) -> int:
@@ -273,14 +273,6 @@ class FlexibleBody:
         return self.own
 
 
-def positive(value: object, unit: str, entry: str) -> float:
-    """Return a number that is not negative."""
-    number = physical_number(value, unit, entry)
-    if number < 0.0:
-        raise ModelError(f"{entry} {number:g} is negative; give a number from zero, in SI units")
-    return number
-
-
 def _vector(value: Iterable[object], unit: str, entry: str) -> Vector:
     given = members(value, entry, "[0.0, 1.0]")
     numbers = tuple(physical_number(one, unit, entry) for one in given)
@@ -292,7 +284,7 @@ def _vector(value: Iterable[object], unit: str, entry: str) -> Vector:
 def _inertia(value: ArrayLike, axes: int) -> Vector:
     entry = "rigid body: inertia"
     if axes == 2:
-        return (positive(value, "kg*m^2", entry),)
+        return (from_zero(value, "kg*m^2", entry),)
     matrix = real_matrix(value, entry)
     if matrix.shape != (3, 3) or np.abs(matrix - matrix.T).max() > 1e-9 * np.abs(matrix).max():
         raise ModelError(f"{entry}: {brief(value)}; give a symmetric tensor, 3 x 3, in kg m2")

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stickslip.checks import brief, members, set_fields, text, unknown
-from stickslip.damper.body import Body, ContactPoint, FlexibleBody, RigidBody, Sum, positive
+from stickslip.damper.body import Body, ContactPoint, FlexibleBody, RigidBody, Sum
 from stickslip.damper.neighbour import Neighbour, Touched
 from stickslip.disk import BladedDisk, Coupling, Interface
 from stickslip.disk.sector import NEXT
@@ -20,6 +20,7 @@ from stickslip.errors import ModelError
 from stickslip.model import Contact, Coulomb, Force, Model, Structure, join
 from stickslip.model.nodes import Displacement
 from stickslip.model.structure import side_by_side
+from stickslip.units import from_zero
 
 LEFT, RIGHT, DAMPER = "left", "right", "damper"
 
@@ -331,8 +332,8 @@ def _contact(face: Face, first: list[list[Sum]], other: list[list[Sum]] | None) 
         *(one if count > 1 else one[0] for one in ends),
         normal=[point.normal for point in face.points] if count > 1 else face.points[0].normal,
         friction=face.friction,
-        tangential_stiffness=positive(face.tangential_stiffness, "N/m", "face: stiffness") / count,
-        normal_stiffness=positive(face.normal_stiffness, "N/m", "face: stiffness") / count,
+        tangential_stiffness=from_zero(face.tangential_stiffness, "N/m", "face: stiffness") / count,
+        normal_stiffness=from_zero(face.normal_stiffness, "N/m", "face: stiffness") / count,
         gap=face.gap,
         name=face.name or face.to,
     )

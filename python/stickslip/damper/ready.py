@@ -8,10 +8,10 @@ from math import atan, cos, pi, radians, sin
 from typing import Any, TypeAlias
 
 from stickslip.checks import brief, members, set_fields
-from stickslip.damper.body import Body, Centrifugal, ContactPoint, RigidBody, positive
+from stickslip.damper.body import Body, Centrifugal, ContactPoint, RigidBody
 from stickslip.damper.damper import LEFT, RIGHT, Damper, Face
 from stickslip.errors import ModelError
-from stickslip.units import physical_number
+from stickslip.units import from_zero, physical_number
 
 Pair: TypeAlias = float | tuple[float, float]
 """One number for both faces, or one for the left and one for the right face."""
@@ -32,12 +32,12 @@ class _TwoFaces(Damper):
     gap: Pair = 0.0
 
     def __post_init__(self) -> None:
-        set_fields(self, mass=positive(self.mass, "kg", f"{self._entry}: mass"))
+        set_fields(self, mass=from_zero(self.mass, "kg", f"{self._entry}: mass"))
         stiffness = dict.fromkeys(("tangential_stiffness", "normal_stiffness"), "N/m")
         self._keep_pairs(friction="", **stiffness, gap="m")
         for key in ("friction", *stiffness):
             for one in self._pair(key):
-                positive(one, "", f"{self._entry}: {key}")
+                from_zero(one, "", f"{self._entry}: {key}")
         if not isinstance(self.load, Centrifugal):
             set_fields(self, load=physical_number(self.load, "N", f"{self._entry}: load"))
         elif not self.mass:
@@ -199,7 +199,7 @@ class CylinderDamper(_TwoFaces):
     def __post_init__(self) -> None:
         super().__post_init__()
         self._keep_angles()
-        radius = positive(self.cylinder_radius, "m", f"{self._entry}: cylinder_radius")
+        radius = from_zero(self.cylinder_radius, "m", f"{self._entry}: cylinder_radius")
         set_fields(self, cylinder_radius=radius)
         if not radius > 0.0:
             raise ModelError(f"{self._entry}: cylinder_radius 0; give the radius in m")
@@ -344,7 +344,7 @@ def _one_or_two(value: object, unit: str, entry: str) -> Pair:
 
 
 def _inertia(value: float | None, entry: str) -> float | None:
-    return None if value is None else positive(value, "kg*m^2", f"{entry}: inertia")
+    return None if value is None else from_zero(value, "kg*m^2", f"{entry}: inertia")
 
 
 def _require_angle(angle: float, entry: str) -> None:

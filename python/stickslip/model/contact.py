@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from stickslip.checks import Matrix, members, real_number, require_keys, text
 from stickslip.errors import ModelError
 from stickslip.model.dofs import Dofs
-from stickslip.units import physical_number
+from stickslip.units import from_zero
 
 OPEN = 2
 """State of a point whose bodies do not touch, beside 0, stuck, and 1 and -1, slipping."""
@@ -303,15 +303,10 @@ def real_numbers(
 ) -> tuple[float, ...]:
     """Return the numbers of a parameter, which must not be negative."""
     given = members(values, f"{entry}: {key}", f"{key}=[...]")
-    numbers = []
-    for place, value in enumerate(given):
-        number = physical_number(value, unit, f"{entry}: {key}[{place}]", finite=finite)
-        numbers.append(number)
-        if numbers[-1] < 0.0:
-            raise ModelError(
-                f"{entry}: {key}[{place}] {numbers[-1]:g} is negative; give numbers from zero"
-            )
-    return tuple(numbers)
+    return tuple(
+        from_zero(value, unit, f"{entry}: {key}[{place}]", "numbers from zero", finite=finite)
+        for place, value in enumerate(given)
+    )
 
 
 def _plain(value: object) -> object:

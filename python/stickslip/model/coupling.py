@@ -11,7 +11,7 @@ import numpy as np
 from stickslip.checks import Matrix, brief, require_keys, text
 from stickslip.errors import ModelError
 from stickslip.model.dofs import Dofs
-from stickslip.units import physical_number
+from stickslip.units import from_zero
 
 
 @dataclass(frozen=True)
@@ -49,9 +49,7 @@ class Coupling:
             text(self.other, "coupling: other")
         for name, unit in (("stiffness", "N/m"), ("damping", "kg/s")):
             entry = f"coupling at {brief(self.dof)}: {name}"
-            value = physical_number(getattr(self, name), unit, entry)
-            if value < 0.0:
-                raise ModelError(f"{entry} {value:g} is negative; give {unit} above zero")
+            value = from_zero(getattr(self, name), unit, entry, f"{unit} above zero")
             object.__setattr__(self, name, value)
 
     @property

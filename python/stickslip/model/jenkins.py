@@ -13,7 +13,7 @@ from stickslip.checks import Matrix, brief, set_fields
 from stickslip.errors import ModelError
 from stickslip.model.contact import Sliders, real_numbers
 from stickslip.model.ends import TwoEnds
-from stickslip.units import physical_number
+from stickslip.units import from_zero
 
 _FACTORS = ("friction", "normal_load")
 """What the slip force of a Jenkins element is the product of."""
@@ -93,19 +93,17 @@ class Jenkins(_Elements):
         if friction is not None or normal_load is not None or self.slip_force is None:
             made = self._factors(entry, friction, normal_load)
             set_fields(self, factors_of_slip=made, slip_force=made[0] * made[1])
-        stiffness = physical_number(self.stiffness, "N/m", f"{entry}: stiffness", finite=False)
-        slip_force = physical_number(self.slip_force, "N", f"{entry}: slip_force", finite=False)
-        if stiffness < 0.0:
-            raise ModelError(f"{entry}: stiffness {stiffness:g} is negative; give N/m above zero")
+        stiffness = from_zero(
+            self.stiffness, "N/m", f"{entry}: stiffness", "N/m above zero", finite=False
+        )
         if np.isinf(stiffness):
             raise ModelError(
                 f"{entry}: stiffness inf; take about 1000 times the local structure stiffness as "
                 "the rigid limit"
             )
-        if slip_force < 0.0:
-            raise ModelError(
-                f"{entry}: slip_force {slip_force:g} is negative; give N, 0 for no friction"
-            )
+        slip_force = from_zero(
+            self.slip_force, "N", f"{entry}: slip_force", "N, 0 for no friction", finite=False
+        )
         set_fields(self, stiffness=stiffness, slip_force=slip_force)
 
     def _factors(
@@ -120,13 +118,10 @@ class Jenkins(_Elements):
                 "normal_load=...",
                 study=f"slip_force {given}; give 'slip_force', or 'friction' and 'normal_load'",
             )
-        values = []
-        for name, value, unit in (("friction", friction, ""), ("normal_load", normal_load, "N")):
-            number = physical_number(value, unit, f"{entry}: {name}")
-            if number < 0.0:
-                raise ModelError(f"{entry}: {name} {number:g} is negative; give it from zero")
-            values.append(number)
-        return values[0], values[1]
+        return (
+            from_zero(friction, "", f"{entry}: friction", "it from zero"),
+            from_zero(normal_load, "N", f"{entry}: normal_load", "it from zero"),
+        )
 
     @property
     def _elements(self) -> Iterable[tuple[float, float]]:

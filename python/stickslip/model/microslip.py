@@ -13,7 +13,7 @@ from stickslip.checks import Matrix, brief, members, set_fields
 from stickslip.errors import ModelError
 from stickslip.model.ends import TwoEnds
 from stickslip.model.jenkins import Jenkins
-from stickslip.units import physical_number
+from stickslip.units import from_zero, physical_number
 
 Table: TypeAlias = tuple[tuple[float, ...], tuple[float, ...]]
 """Displacements [m] and forces [N] of a backbone."""
@@ -36,20 +36,24 @@ class _Microslip(TwoEnds):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        stiffness = self._number("stiffness", "N/m")
-        if stiffness < 0.0:
-            raise self._refusal("stiffness", "is negative; give N/m above zero")
-        slip_force = self._number("slip_force", "N", finite=False)
-        if slip_force < 0.0:
-            raise self._refusal("slip_force", "is negative; give N, 0 for no friction")
-        set_fields(self, stiffness=stiffness, slip_force=slip_force)
+        entry, remedy = f"{self._entry}: slip_force", "N, 0 for no friction"
+        set_fields(
+            self,
+            stiffness=from_zero(
+                self.stiffness, "N/m", f"{self._entry}: stiffness", "N/m above zero"
+            ),
+            slip_force=from_zero(self.slip_force, "N", entry, remedy, finite=False),
+        )
 
     @property
     def _entry(self) -> str:
         return f"{self.law} contact at {brief(self.dof)}"
 
-    def _number(self, key: str, unit: str = "", *, finite: bool = True) -> float:
-        return physical_number(getattr(self, key), unit, f"{self._entry}: {key}", finite=finite)
+    def _keep_numbers(self, *keys: str) -> None:
+        """Keep numbers without a unit."""
+        for key in keys:
+            number = physical_number(getattr(self, key), "", f"{self._entry}: {key}")
+            set_fields(self, **{key: number})
 
     def _refusal(self, key: str, text: str) -> ModelError:
         return ModelError(f"{self._entry}: {key} {getattr(self, key):g} {text}")
@@ -130,16 +134,15 @@ class Iwan(_Microslip):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        chi, beta = self._number("chi"), self._number("beta")
-        if not -1.0 < chi <= 0.0:
+        self._keep_numbers("chi", "beta")
+        if not -1.0 < self.chi <= 0.0:
             raise self._refusal(
                 "chi",
                 "is outside -1 < chi <= 0; the dissipation per cycle grows with the amplitude to "
                 "the power chi + 3",
             )
-        if beta < 0.0:
+        if self.beta < 0.0:
             raise self._refusal("beta", "is negative; give 0 for a smooth onset of gross slip")
-        set_fields(self, chi=chi, beta=beta)
 
     @property
     def gross_slip_displacement(self) -> float:
@@ -227,7 +230,7 @@ class Masing(_Microslip):
                 "takes it"
             )
         if self.shear_lag is not None:
-            set_fields(self, shear_lag=self._number("shear_lag"))
+            self._keep_numbers("shear_lag")
             if not self.shear_lag > 0.0:
                 raise self._refusal(
                     "shear_lag", "is not positive; a rigid bar is a Jenkins element"
@@ -341,11 +344,10 @@ class BoucWen(_Microslip):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        exponent, beta = self._number("exponent"), self._number("beta")
-        if exponent < 1.0:
+        self._keep_numbers("exponent", "beta")
+        if self.exponent < 1.0:
             raise self._refusal("exponent", "is below 1; give 1 for the softest knee")
-        if not 0.5 <= beta <= 1.0:
+        if not 0.5 <= self.beta <= 1.0:
             raise self._refusal(
                 "beta", "is outside 0.5 to 1; below, small loops would give work back"
             )
-        set_fields(self, exponent=exponent, beta=beta)

@@ -9,7 +9,7 @@ import numpy as np
 
 from stickslip.checks import Matrix, brief
 from stickslip.errors import ModelError
-from stickslip.units import physical_number
+from stickslip.units import from_zero, physical_number
 
 Vectors: TypeAlias = tuple[float, ...] | tuple[tuple[float, ...], ...]
 """One vector for all nodes, or one per node."""
@@ -76,24 +76,15 @@ def number_of_each(
     value: object, unit: str, shape: tuple[int, ...], entry: str, *, negative: bool
 ) -> Each:
     """Return the number of all nodes, or one per node."""
+    number = physical_number if negative else from_zero
     if not (isinstance(value, list | tuple) or (isinstance(value, np.ndarray) and value.ndim)):
-        return _number(value, unit, entry, negative=negative)
+        return number(value, unit, entry)
     listed = tuple(value)
     if len(shape) == 1 or len(listed) != shape[0]:
         nodes = "one node" if len(shape) == 1 else f"{shape[0]} nodes"
         expected = "one number" if len(shape) == 1 else "one number, or one per node"
         raise ModelError(f"{entry}: {len(listed)} numbers for {nodes}; give {expected}")
-    return tuple(
-        _number(one, unit, f"{entry}[{place}]", negative=negative)
-        for place, one in enumerate(listed)
-    )
-
-
-def _number(value: object, unit: str, entry: str, *, negative: bool) -> float:
-    number = physical_number(value, unit, entry)
-    if number < 0.0 and not negative:
-        raise ModelError(f"{entry} {number:g} is negative; give a number from zero, in SI units")
-    return number
+    return tuple(number(one, unit, f"{entry}[{place}]") for place, one in enumerate(listed))
 
 
 def times_areas(

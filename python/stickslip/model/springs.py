@@ -9,10 +9,9 @@ from typing import ClassVar
 import numpy as np
 
 from stickslip.checks import Matrix, brief, set_fields
-from stickslip.errors import ModelError
 from stickslip.model.ends import TwoEnds
 from stickslip.model.jenkins import Jenkins
-from stickslip.units import physical_number
+from stickslip.units import from_zero, physical_number
 
 
 @dataclass(frozen=True)
@@ -90,9 +89,7 @@ class Stop(_Spring):
     def __post_init__(self) -> None:
         super().__post_init__()
         entry = f"stop at {brief(self.dof)}"
-        stiffness = physical_number(self.stiffness, "N/m", f"{entry}: stiffness")
-        if stiffness < 0.0:
-            raise ModelError(f"{entry}: stiffness {stiffness:g} is negative; give N/m above zero")
+        stiffness = from_zero(self.stiffness, "N/m", f"{entry}: stiffness", "N/m above zero")
         gap = physical_number(self.gap, "m", f"{entry}: gap")
         set_fields(self, stiffness=stiffness, gap=gap)
 
