@@ -23,7 +23,7 @@ from stickslip.checks import (
 from stickslip.errors import ModelError
 from stickslip.interruption import stopped
 from stickslip.model import Model, Structure
-from stickslip.results.design_map import DesignMap
+from stickslip.results.damper_curve import DesignMap
 from stickslip.results.status import Status
 from stickslip.settings.peaks import PeakSettings
 from stickslip.units import physical_number

@@ -26,6 +26,8 @@ _FLAT = 0.01, 0.5 * np.pi
 """Degrees between these are taken for radians: so flat a damper is none of friction."""
 _PERCENTS = 0.5
 """Deviations of blades from here on are taken for percents: those of one disk are smaller."""
+RIGID = 1e5
+"""Stiffness of a contact, over that of the structure at its DOFs, up to which motions are found."""
 
 
 def doubts(model: Model) -> tuple[Diagnostic | None, ...]:
@@ -133,10 +135,6 @@ def instability(model: Model) -> Diagnostic | None:
 def is_unique(model: Model) -> bool:
     """Tell whether the steady motion is known to be the only one, and stable."""
     return uniqueness(model) is None and instability(model) is None
-
-
-RIGID = 1e5
-"""Stiffness of a contact, over that of the structure at its DOFs, up to which motions are found."""
 
 
 UNSOLVED = (

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 _file = partial(typer.Option, metavar="FILE")
 _omega = partial(typer.Option, metavar="OMEGA")
+_PORT = 8350
+_LAST_PORT = 65535
 
 
 @command("stickslip show results/snecma-beam-20.313.nc")
@@ -234,10 +236,6 @@ def export(
             target = out or file.with_name(f"{file.stem}{part}{suffix}")
             result.export(target, name)
             tell(f"export: {target}")
-
-
-_PORT = 8350
-_LAST_PORT = 65535
 
 
 @command(

@@ -40,6 +40,8 @@ chosen = chosen.tocoo()
 np.savez(sys.argv[2], dofs=dofs, held=full.const, rows=chosen.row, columns=chosen.col,
          values=chosen.data, size=len(dofs))
 """
+_WAYS = {"UX": "1", "UY": "2", "UZ": "3", "ROTX": "4", "ROTY": "5", "ROTZ": "6"}
+_ENDINGS = (".mapping", ".MAPPING")
 
 
 def read_ansys(path: Path, key: Key) -> Labelled:
@@ -81,10 +83,6 @@ def _labelled(read: dict[str, np.ndarray[tuple[int, ...], np.dtype[np.generic]]]
         raise ValueError("a diagonal entry is not positive; the file is damaged")
     names = node_names(dofs[free, 0], dofs[free, 1] + 1)
     return Labelled(matrix[free][:, free].tocoo(), names)
-
-
-_WAYS = {"UX": "1", "UY": "2", "UZ": "3", "ROTX": "4", "ROTY": "5", "ROTZ": "6"}
-_ENDINGS = (".mapping", ".MAPPING")
 
 
 def with_mapping(read: Callable[[Path], Sparse]) -> Callable[[Path], Labelled | Sparse]:

@@ -6,7 +6,7 @@ from stickslip.plot.blades import blade_bars, blade_curves
 from stickslip.plot.bodies import damper_drawing
 from stickslip.plot.contacts import contact_forces, events, hysteresis, static_forces, waveform
 from stickslip.plot.curves import curves, slip
-from stickslip.plot.cycles import limit_cycles, stability_map
+from stickslip.plot.cycles import cycle_multipliers, limit_cycles, multipliers, stability_map
 from stickslip.plot.damper import damper, design_map
 from stickslip.plot.diameters import (
     aerodynamic,
@@ -19,7 +19,6 @@ from stickslip.plot.fit import fit, fit_backbone, fit_intervals, fit_residuals
 from stickslip.plot.interface import contact_map
 from stickslip.plot.mistuning import amplification, distribution
 from stickslip.plot.modes import backbone, mode_damping
-from stickslip.plot.multipliers import cycle_multipliers, multipliers
 from stickslip.plot.speeds import campbell, speed_response
 from stickslip.plot.transients import contact_history, history, phase, poincare, spectrum
 from stickslip.plot.uncertainty import backbone_band, sobol_indices, uncertainty_distribution

@@ -15,9 +15,11 @@ from stickslip.plot.figure import figure
 from stickslip.plot.limits import force_level, limit_curve, unit_level
 from stickslip.plot.options import DamperOptions, Frame
 from stickslip.plot.style import Looks, Scale
-from stickslip.results.damper_curve import DamperCurve
-from stickslip.results.design_map import DesignMap
+from stickslip.results.damper_curve import DamperCurve, DesignMap
 from stickslip.results.fields import Float, Int
+
+_DECADES = 30.0
+"""Values that go so far, over the least, were chosen by factors."""
 
 
 @figure
@@ -132,10 +134,6 @@ def _draw_limits(ax: Axes, curve: DamperCurve, view: _View) -> None:
         _, amplitude = limit_curve(curve.model, kept.dof, kept.span, kept.measure, stuck=stuck)
         height = float(amplitude.max()) * view.stretch * view.factor
         ax.plot(view.x, height, **style.linear_limit(stuck=stuck))
-
-
-_DECADES = 30.0
-"""Values that go so far, over the least, were chosen by factors."""
 
 
 @figure

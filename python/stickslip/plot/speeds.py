@@ -17,6 +17,9 @@ from stickslip.plot.style import Looks
 from stickslip.results.campbell import Campbell
 from stickslip.results.speed_response import SpeedResponse
 
+_MARGIN = 1.15
+"""How far the diagram reaches above the highest excitation."""
+
 
 @figure
 def speed_response(
@@ -63,10 +66,6 @@ def _mark_resonances(
                 at = style.OMEGA["rpm"].factor * one.speed
                 ax.axvline(at, color=colour, lw=1.0, ls=line, label=label, zorder=1.5)
                 label = "_"
-
-
-_MARGIN = 1.15
-"""How far the diagram reaches above the highest excitation."""
 
 
 @figure

@@ -30,7 +30,7 @@ VIEWS: Mapping[str, tuple[str, str]] = {
     "basin_map": ("stickslip.views.motions", "BasinView"),
     "mistuning_study": ("stickslip.views.mistuning", "MistuningView"),
     "static_response": ("stickslip.views.transients", "StaticView"),
-    "fit": ("stickslip.views.fits", "FitView"),
+    "fit": ("stickslip.views.uncertainty", "FitView"),
     "uncertainty": ("stickslip.views.uncertainty", "UncertaintyView"),
     "limit_cycles": ("stickslip.views.cycles", "CycleView"),
     "campbell": ("stickslip.views.speeds", "CampbellView"),

@@ -15,6 +15,8 @@ from stickslip.views.kinds import Dofs, Output, Rows, View
 from stickslip.views.picture import Panels, labelled
 from stickslip.views.tables import Row
 
+_NEAR = 3
+
 
 class SpeedView(View[SpeedResponse]):
     """The highest of the computed amplitudes, and where it is."""
@@ -77,9 +79,6 @@ class SpeedView(View[SpeedResponse]):
             orders = [f"EO {one.engine_order:g}" for _, one in own]
             panels += labelled([panel], [name for name, _ in own], orders)
         return panels
-
-
-_NEAR = 3
 
 
 class CampbellView(View[Campbell]):
