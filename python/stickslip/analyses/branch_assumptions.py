@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from stickslip import _core
 from stickslip.analyses.texts import told
 from stickslip.model import Model
 from stickslip.results.arrays import STABILITY, Arrays
 from stickslip.results.diagnostic import Diagnostic, present
-
-if TYPE_CHECKING:
-    from stickslip import _core
 
 _ENDS = {
     "returned": "branch-end/returned",

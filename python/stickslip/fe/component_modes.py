@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,12 +12,9 @@ from stickslip.checks import brief, members, text, unknown, whole_number
 from stickslip.errors import ModelError
 from stickslip.fe.reduced_modes import MASSLESS
 from stickslip.fe.reduction import Reduction, panels
-from stickslip.fe.sparse import DENSE, Factor, lowest_modes, symmetric_sparse
+from stickslip.fe.sparse import DENSE, CscArray, Factor, lowest_modes, symmetric_sparse
 from stickslip.model.matrix_units import MatrixUnits, Units
 from stickslip.units import physical_number
-
-if TYPE_CHECKING:
-    from scipy.sparse import csc_array
 
 Dof: TypeAlias = int | str
 _FIRST = 20
@@ -183,7 +180,7 @@ def _own_name(dof: Dof, rows: tuple[str, ...] | None) -> str:
     return rows[row] if rows is not None and row < len(rows) else str(row)
 
 
-def _most_modes(mass: csc_array, moving: NDArray[np.bool_], wanted: int | np.integer[Any]) -> int:
+def _most_modes(mass: CscArray, moving: NDArray[np.bool_], wanted: int | np.integer[Any]) -> int:
     """Return how many modes there are; at most, where few are wanted, or more than can be."""
     size, count = mass.shape[0], int(moving.sum())
     if not count or (size > DENSE and not count >= wanted >= 0.5 * size):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from os import PathLike
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,16 +13,11 @@ from numpy.typing import ArrayLike, NDArray
 from stickslip.checks import Matrix, MatrixLike, constant, whole_number
 from stickslip.errors import ModelError
 from stickslip.fe.reduced_modes import natural_modes, shift_below, springs_of
-from stickslip.fe.sparse import Factor, lowest_modes
+from stickslip.fe.sparse import CscArray, Factor, lowest_modes
 from stickslip.model import Force
 from stickslip.model.damping import DampingLaw
 from stickslip.model.structure import Structure
-
-if TYPE_CHECKING:
-    from scipy.sparse import csc_array
-
-    from stickslip.results.dataset import Stored
-from stickslip.results.dataset import Record
+from stickslip.results.dataset import Record, Stored
 
 
 class Reduction:
@@ -46,8 +41,8 @@ class Reduction:
 
     def __init__(
         self,
-        mass: csc_array,
-        stiffness: csc_array,
+        mass: CscArray,
+        stiffness: CscArray,
         row_names: tuple[str, ...] | None,
         boundary: tuple[str, ...],
         rows: NDArray[np.int64],
@@ -283,7 +278,7 @@ def reduction_of(dataset: Stored) -> Reduction:
 _SPARSE = ("data", "indices", "indptr")
 
 
-def _sparse_of(dataset: Stored, name: str, size: int) -> csc_array:
+def _sparse_of(dataset: Stored, name: str, size: int) -> CscArray:
     from scipy.sparse import csc_array
 
     data, indices, indptr = (dataset[f"{name}_{part}"].values for part in _SPARSE)
@@ -300,7 +295,7 @@ def panels(rows: int, columns: int) -> Iterator[slice]:
         yield slice(first, min(first + width, columns))
 
 
-def _projected(matrix: csc_array, basis: NDArray[np.float64]) -> NDArray[np.float64]:
+def _projected(matrix: CscArray, basis: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return T^T A T; A T as a whole would be as large as T."""
     projected = np.empty((basis.shape[1],) * 2)
     for panel in panels(*basis.shape):

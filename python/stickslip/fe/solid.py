@@ -6,18 +6,16 @@ import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.checks import optional_package, real_number, whole_number
 from stickslip.errors import ModelError
+from stickslip.fe.sparse import CscArray
 from stickslip.fe.vtu import write_vtu
 from stickslip.units import physical_number
-
-if TYPE_CHECKING:
-    from scipy.sparse import csc_array
 
 _BOTTOM = [(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0)]
 _EDGES = [(1, 0, 0), (2, 1, 0), (1, 2, 0), (0, 1, 0)]
@@ -96,7 +94,7 @@ class Solid:
         return tuple(f"{node}.{way}" for node in range(1, len(self.nodes) + 1) for way in (1, 2, 3))
 
     @cached_property
-    def stiffness(self) -> csc_array:
+    def stiffness(self) -> CscArray:
         """Stiffness matrix [N/m], sparse, of the free body."""
         shear = self.young / (2.0 * (1.0 + self.poisson))
         lame = 2.0 * shear * self.poisson / (1.0 - 2.0 * self.poisson)
@@ -114,7 +112,7 @@ class Solid:
         return self._assembled(of_elements)
 
     @cached_property
-    def mass(self) -> csc_array:
+    def mass(self) -> CscArray:
         """Consistent mass matrix [kg], sparse."""
 
         def of_elements(shapes: _Array, _: _Array, weights: _Array) -> _Array:
@@ -186,7 +184,7 @@ class Solid:
         """
         write_vtu(path, self.nodes, [("hexahedron20", self.elements)], fields)
 
-    def _assembled(self, of_elements: Callable[[_Array, _Array, _Array], _Array]) -> csc_array:
+    def _assembled(self, of_elements: Callable[[_Array, _Array, _Array], _Array]) -> CscArray:
         """Add up matrices of elements, shape (elements, 20, 3, 20, 3), of their `_shapes`.
 
         The forms of scikit-fem give the same to rounding, eleven times slower: they are evaluated

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip import _core
 from stickslip.checks import brief
 from stickslip.errors import ModelError
 from stickslip.interruption import beside
@@ -15,20 +16,20 @@ from stickslip.model.damping import eigen_pencil
 if TYPE_CHECKING:
     from scipy.sparse import csc_array
 
-    from stickslip import _core
-
+CscArray: TypeAlias = "csc_array"
+"""Of SciPy, which takes long to load."""
 _ASYMMETRY = 1e-8
 DENSE = 400
 """Rows up to which a dense eigenproblem is faster and surer than Lanczos' method."""
 
 
-def asymmetry(matrix: csc_array) -> float:
+def asymmetry(matrix: CscArray) -> float:
     """Return the largest |a_ij - a_ji| as a part of the largest |a_ij|."""
     largest = float(abs(matrix).max()) if matrix.nnz else 0.0
     return float(abs(matrix - matrix.T).max()) / largest if largest else 0.0
 
 
-def symmetric_sparse(value: object, entry: str) -> tuple[csc_array, float]:
+def symmetric_sparse(value: object, entry: str) -> tuple[CscArray, float]:
     """Return a matrix as sparse, real, finite and exactly symmetric, and how symmetric it was.
 
     Up to 1e-8 of the largest entry are rounded digits.
@@ -63,7 +64,7 @@ class Factor:
     Raises RuntimeError if it is singular to the last digit, MemoryError if its factors do not fit.
     """
 
-    def __init__(self, matrix: csc_array) -> None:
+    def __init__(self, matrix: CscArray) -> None:
         self.size = matrix.shape[0]
         self._factor: Any = _cholesky(matrix) or _lu(matrix)
 
@@ -73,9 +74,7 @@ class Factor:
         return solution.reshape(right.shape)
 
 
-def _cholesky(matrix: csc_array) -> _core.SparseCholesky | None:
-    from stickslip import _core
-
+def _cholesky(matrix: CscArray) -> _core.SparseCholesky | None:
     matrix.sum_duplicates()
     begins, rows = matrix.indptr.astype(np.int64), matrix.indices.astype(np.int32, copy=False)
     try:
@@ -84,7 +83,7 @@ def _cholesky(matrix: csc_array) -> _core.SparseCholesky | None:
         return None
 
 
-def _lu(matrix: csc_array) -> Any:
+def _lu(matrix: CscArray) -> Any:
     from scipy.sparse.linalg import splu
 
     # Pivots on the diagonal keep the symmetric order, which fills in least.
@@ -95,7 +94,7 @@ def _lu(matrix: csc_array) -> Any:
 
 
 def lowest_modes(
-    stiffness: csc_array, mass: csc_array, count: int, factor: Factor, shift: float = 0.0
+    stiffness: CscArray, mass: CscArray, count: int, factor: Factor, shift: float = 0.0
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the modes of K x = lambda M x nearest above a shift, which is below every eigenvalue.
 

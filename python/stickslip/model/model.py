@@ -10,11 +10,12 @@ from collections.abc import Callable, Iterable, Iterator, Sequence, Set
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import chain, count
-from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias, TypeVar
+from typing import Any, ClassVar, Self, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip import _core
 from stickslip.checks import Matrix, brief, members, real_number, set_fields, unknown, whole_number
 from stickslip.errors import ModelError
 from stickslip.model.contact import Contact
@@ -22,9 +23,6 @@ from stickslip.model.contact_law import ContactLaw
 from stickslip.model.damping import DampingLaw
 from stickslip.model.force import Force
 from stickslip.model.structure import Structure
-
-if TYPE_CHECKING:
-    from stickslip import _core
 
 _Item = TypeVar("_Item")
 _Made = TypeVar("_Made")
@@ -220,8 +218,6 @@ class Model:
     @cached_property
     def problem(self) -> _core.Problem:
         """The model as the compiled core sees it: numbers without names, built once."""
-        from stickslip import _core
-
         structure = self.structure
         return from_core(
             _core.Problem,
@@ -334,8 +330,6 @@ def _remade(kind: type[Model], parts: dict[str, Any]) -> Model:
 
 def refusal(error: ValueError, model: Model) -> ModelError:
     """Return what the core refuses of a model, with the names that the core does not know."""
-    from stickslip import _core
-
     if not isinstance(error, _core.TooFastError):
         return ModelError(str(error))
     dof, ratio, omega = error.args

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
@@ -16,14 +16,7 @@ from stickslip.results.events import ContactStates, states_at
 from stickslip.results.fields import Complex, Float
 from stickslip.results.peaks import Peaks
 
-if TYPE_CHECKING:
-    from stickslip import _core
-
-    _Evaluation: TypeAlias = tuple[
-        _core.Problem, int, Complex, str | float | None, tuple[int, bool]
-    ]
-
-
+_Evaluation: TypeAlias = tuple[_core.Problem, int, Complex, str | float | None, tuple[int, bool]]
 _INSTANTS = 4096
 """Instants per period by which states are told from forces, as the core does."""
 

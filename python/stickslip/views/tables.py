@@ -4,18 +4,17 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 from rich.table import Table
 
-# The command says its version without loading these.
-if TYPE_CHECKING:
-    from stickslip.model import Model
-    from stickslip.results.damper_curve import DamperCurve
-    from stickslip.results.forced_response import ForcedResponse
-    from stickslip.results.result import Result
-    from stickslip.results.status import Status
+from stickslip.model import Model
+from stickslip.results.damper_curve import DamperCurve
+from stickslip.results.forced_response import ForcedResponse
+from stickslip.results.result import Result
+from stickslip.results.status import Status
 
+# The command says its version without loading these.
 
 __all__ = ["Row", "Table", "assumed", "bound_rows", "counted", "listed", "model_rows", "tabulated"]
 
