@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING, Literal, TypeAlias, Union
 from stickslip.checks import as_list, brief, choice, file_path, members, text
 from stickslip.errors import ModelError
 from stickslip.files import require_place, write
+from stickslip.html.sections import Entry, content
 from stickslip.results.result import Result
+from stickslip.results.store import load
+from stickslip.study.tables import OutputTable
 
 if TYPE_CHECKING:
     from jinja2 import Environment
-
-    from stickslip.html.sections import Entry
 
 Reported: TypeAlias = Union[Result, str, "os.PathLike[str]"]
 
@@ -69,9 +70,6 @@ def report(
     if title is not None:
         text(title, "title")
     page = _templates().get_template("report.html")
-    from stickslip.html.sections import content
-    from stickslip.study.tables import OutputTable
-
     output = OutputTable(omega_unit=omega_unit, length_unit=length_unit)
     with warnings.catch_warnings():
         # the page marks these peaks
@@ -101,9 +99,6 @@ def _templates() -> Environment:
 
 def _entries(results: object) -> list[Entry]:
     """Return the results, read from their files; files of one name get that of their folder too."""
-    from stickslip.html.sections import Entry
-    from stickslip.results.store import load
-
     neither = "is neither a result nor a file of one"
     if isinstance(results, Result | str | os.PathLike):
         results = [results]

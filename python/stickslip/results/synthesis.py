@@ -19,6 +19,7 @@ import numpy as np
 
 from stickslip.checks import brief, constant, unknown
 from stickslip.errors import ModelError
+from stickslip.model.force import Force
 from stickslip.results.fields import Bool, Complex, Float
 from stickslip.results.mode_shapes import Mode, ModeMotions, ModeShapes, left_out
 
@@ -170,8 +171,6 @@ def _turned(
 
 def force_vector(mode: Mode, given: object) -> Complex:
     """Return the fundamental of forces on the DOFs of a mode [N]."""
-    from stickslip.model.force import Force
-
     forces = [given] if isinstance(given, Force) else given
     vector = np.zeros(len(mode.model.structure), np.complex128)
     if not isinstance(forces, list | tuple) or not forces:

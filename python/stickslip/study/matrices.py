@@ -12,6 +12,7 @@ from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
 
 from stickslip.checks import MatrixLike, brief, close, file_path, is_file, unknown
 from stickslip.errors import EntryError, ModelError
+from stickslip.io import read_matrix
 from stickslip.model.damping import DampingLaw, ModalDamping, Rayleigh
 from stickslip.settings.entries import (
     Dof,
@@ -192,8 +193,6 @@ def damping_of(
 
 def matrix_of(source: str | MatrixFile | Rows, folder: Path, entry: str) -> MatrixLike:
     """Return a matrix that is written out, or of a file relative to a folder."""
-    from stickslip.io import read_matrix
-
     if isinstance(source, tuple):
         return np.array(source, dtype=np.float64)
     name, key = (source, None) if isinstance(source, str) else (source.file, source.key)

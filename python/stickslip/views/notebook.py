@@ -4,16 +4,12 @@ from __future__ import annotations
 
 from html import escape
 from itertools import islice
-from typing import TYPE_CHECKING
 
 from stickslip.errors import ModelError
 from stickslip.model.notable import notable_dofs
+from stickslip.results.result import Result
 from stickslip.views.kinds import cautions, failures, view_of
-
-if TYPE_CHECKING:
-    from rich.table import Table
-
-    from stickslip.results.result import Result
+from stickslip.views.tables import Table
 
 _ROWS = 20
 """Most rows of a table."""

@@ -8,6 +8,7 @@ from typing import TypeAlias
 
 from rich.table import Table
 
+from stickslip.disk import BladedDisk, MistunedDisk
 from stickslip.model import Model
 from stickslip.results.damper_curve import DamperCurve
 from stickslip.results.forced_response import ForcedResponse
@@ -51,8 +52,6 @@ def tabulated(
 
 def model_rows(model: Model) -> list[Row]:
     """Return what a result is of, as rows of its facts."""
-    from stickslip.disk import BladedDisk, MistunedDisk
-
     rows = [("dofs", f"{len(model.structure)}: {listed(model.structure.dofs)}")]
     if isinstance(model, BladedDisk):
         order = f"engine order {model.engine_order}"
