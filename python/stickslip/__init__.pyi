@@ -4,7 +4,6 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from os import PathLike
 from typing import Literal
 
-from distributed import Client
 from numpy.typing import ArrayLike
 
 from stickslip import fe as fe
@@ -12,6 +11,7 @@ from stickslip import plot as plot
 from stickslip import reference as reference
 from stickslip import study as study
 from stickslip._core import __version__ as __version__
+from stickslip.analyses.cluster import Client
 from stickslip.analyses.design_map import design_map as design_map
 from stickslip.analyses.design_map import spinning as spinning
 from stickslip.analyses.flutter_formulas import rigid_limit_cycle as rigid_limit_cycle

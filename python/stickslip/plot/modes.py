@@ -70,13 +70,7 @@ def backbone(
 def mode_damping(
     results: NonlinearModes | Sequence[NonlinearModes], **options: Unpack[DampingOptions]
 ) -> Axes:
-    """Draw the damping ratio of nonlinear modes against modal amplitude; viscous parts are dotted.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-        The axes.
-    """
+    """Draw the damping ratio of nonlinear modes against modal amplitude, viscous parts dotted."""
     branches = several(NonlinearModes, results)
     names = checked_labels(options["labels"], names_of(branches))
     made, ax = options["ax"] is None, style.new_axes(options["ax"])

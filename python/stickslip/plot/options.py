@@ -214,13 +214,9 @@ class LimitOptions(Frame, total=False):
 
 
 class DiameterOptions(Spectral, total=False):
-    """Keywords of `nodal_diameters`."""
+    """Keywords of `nodal_diameters` and `campbell`."""
 
     slipping: Annotated[bool, True, "Draw the frequencies with slipping contacts too."]
-
-
-class CampbellOptions(DiameterOptions, total=False):
-    """Keywords of `campbell`."""
 
 
 class SafeOptions(DiameterOptions, total=False):

@@ -12,7 +12,7 @@ from stickslip.errors import ModelError
 from stickslip.plot import style
 from stickslip.plot.arguments import checked_labels, several
 from stickslip.plot.figure import figure
-from stickslip.plot.options import CampbellOptions, SpeedOptions
+from stickslip.plot.options import DiameterOptions, SpeedOptions
 from stickslip.plot.style import Looks
 from stickslip.results.campbell import Campbell
 from stickslip.results.speed_response import SpeedResponse
@@ -69,7 +69,7 @@ def _mark_resonances(
 
 
 @figure
-def campbell(ax: Axes, /, result: Campbell, **options: Unpack[CampbellOptions]) -> None:
+def campbell(ax: Axes, /, result: Campbell, **options: Unpack[DiameterOptions]) -> None:
     """Draw natural frequencies over the speed of rotation, and the lines of engine orders.
 
     Of a disk the modes of the nodal diameters are drawn that the orders excite. Only modes that the
