@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from rich.table import Table
 
-from stickslip.disk import BladedDisk, MistunedDisk
-from stickslip.model import Model
-from stickslip.results.damper_curve import DamperCurve
-from stickslip.results.forced_response import ForcedResponse
-from stickslip.results.result import Result
-from stickslip.results.status import Status
-
 # The command says its version without loading these.
+if TYPE_CHECKING:
+    from stickslip.model import Model
+    from stickslip.results.damper_curve import DamperCurve
+    from stickslip.results.forced_response import ForcedResponse
+    from stickslip.results.result import Result
+    from stickslip.results.status import Status
+
 
 __all__ = ["Row", "Table", "assumed", "bound_rows", "counted", "listed", "model_rows", "tabulated"]
 
@@ -52,6 +52,8 @@ def tabulated(
 
 def model_rows(model: Model) -> list[Row]:
     """Return what a result is of, as rows of its facts."""
+    from stickslip.disk import BladedDisk, MistunedDisk
+
     rows = [("dofs", f"{len(model.structure)}: {listed(model.structure.dofs)}")]
     if isinstance(model, BladedDisk):
         order = f"engine order {model.engine_order}"
