@@ -151,9 +151,18 @@ def test_scaled_changes_levels_only():
     assert original.scaled(slip_force=0.0).contacts[1].slip_force == math.inf
 
 
+def test_levels_leave_static_loads():
+    loaded = model(forces=[Force("tip", 2.0), Force("tip", 5.0, harmonic=0)])
+    assert [one.amplitude for one in loaded.scaled(force=3.0).forces] == [6.0, 5.0]
+    assert [one.amplitude for one in loaded.scaled(load=3.0).forces] == [2.0, 15.0]
+    static = model(forces=[Force("tip", 5.0, harmonic=0)])
+    assert static.scaled(force=2.0, load=3.0).forces[0].amplitude == 30.0
+
+
 @pytest.mark.parametrize(
     ("factors", "message"),
     [
+        ({"load": math.nan}, "factor on the static loads: nan"),
         ({"force": math.nan}, "factor on the forces: nan"),
         ({"slip_force": math.inf}, "factor on the slip forces: inf"),
         ({"slip_force": -1.0}, "factor on the slip forces: -1 is negative"),

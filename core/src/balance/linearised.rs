@@ -6,7 +6,7 @@
 //! | cause | `J dU =` |
 //! |---|---|
 //! | frequency | `dU^stuck/dω + dG/dω Q` |
-//! | a factor on the load | `U^stuck` |
+//! | a factor on the loads that vary | `U^stuck` without its mean |
 //! | a parameter p of a law | `−G ∂F/∂p` |
 //!
 //! An amplitude follows by the envelope theorem: at its turning points a motion is stationary, so
@@ -27,7 +27,7 @@ use crate::Error;
 pub enum Cause {
     /// The excitation frequency.
     Frequency,
-    /// A factor on all external loads, at its value one.
+    /// A factor on the external loads that vary, at its value one; static loads stay as they are.
     Load,
     /// A parameter of a contact's law, both by position.
     Law {
@@ -95,7 +95,11 @@ impl<'a> Linearised<'a> {
     pub fn contact_rate(&mut self, cause: Cause) -> Option<Vec<f64>> {
         let rhs = match cause {
             Cause::Frequency => self.equations.frequency_rate(),
-            Cause::Load => self.equations.stuck_response().to_vec(),
+            Cause::Load => {
+                let mut rhs = self.equations.stuck_response().to_vec();
+                self.copy_means(None, &mut rhs);
+                rhs
+            }
             Cause::Law { .. } => {
                 let mut rhs = vec![0.0; self.x.len()];
                 let mut force = self.explicit(cause);
@@ -142,11 +146,25 @@ impl<'a> Linearised<'a> {
         self.equations.add_tangent_product(contact_rate, &mut slip_rate);
         let quantity = if cause == Cause::Load { Quantity::Whole } else { Quantity::OfSlip };
         let mut rate = self.series(quantity, [contact_rate, &slip_rate], dofs)?;
+        if cause == Cause::Load && self.equations.harmonics().has_mean() {
+            let of_slip = self.series(Quantity::OfSlip, [contact_rate, &slip_rate], dofs)?;
+            self.copy_means(Some(&of_slip), &mut rate);
+        }
         if cause == Cause::Frequency {
             let slope = self.series(Quantity::Slope, [&self.x, &self.slip_load], dofs)?;
             rate.iter_mut().zip(&slope).for_each(|(r, s)| *r += s);
         }
         Ok(rate)
+    }
+
+    /// Takes the means of series, if there are any, from others or makes them zero.
+    fn copy_means(&self, from: Option<&[f64]>, to: &mut [f64]) {
+        let harmonics = self.equations.harmonics();
+        if harmonics.has_mean() {
+            for at in (0..to.len()).step_by(harmonics.slots()) {
+                to[at] = from.map_or(0.0, |from| from[at]);
+            }
+        }
     }
 
     /// Builds series order by order from contact displacements and slip loads.

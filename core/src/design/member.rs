@@ -18,8 +18,8 @@ pub(super) struct Member {
 impl Member {
     /// The member at a value of the parameter.
     ///
-    /// A load level λ is solved as the loads as they are against slip forces over λ: friction
-    /// knows their ratio alone, and all levels then share one decomposition.
+    /// A load level λ without static loads is solved as the loads as they are against slip forces over λ:
+    /// friction knows their ratio alone, and all levels then share one decomposition.
     ///
     /// # Errors
     /// A value that a law refuses, a contact or parameter that does not exist, a ratio of negative
@@ -69,6 +69,10 @@ pub(super) fn objective(
 fn level(model: &Model, residual: Residual, level: f64) -> Result<Member, Error> {
     if !(level > 0.0 && level.is_finite()) {
         return Err(Error::value("level", level, "must be a finite factor above zero"));
+    }
+    if model.compliance().forced_harmonics().contains(&0) {
+        let causes = vec![(Cause::Load, level.recip())];
+        return Ok(Member { model: model.excited(level)?, residual, scale: 1.0, causes });
     }
     let laws = model.laws().iter().map(|law| law.with_scaled_forces(level.recip())).collect();
     let residual = match residual {

@@ -43,7 +43,7 @@ impl Body {
                 ))
             }
             Self::Ring(ring) => {
-                Ok((Arc::new(ring.with_contact_stiffness(ports.stiffness.as_ref())?), "sectors"))
+                Ok((Arc::new(ring.with_ports(ports)?), "sectors"))
             }
         }
     }

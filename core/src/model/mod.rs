@@ -233,6 +233,32 @@ impl Model {
         Ok(Self { structure, ports, laws, points, compliance, modal_base, body, states })
     }
 
+    /// The same problem under `factor` times the loads that vary; static loads stay as they are.
+    ///
+    /// # Errors
+    /// An eigenvalue iteration that fails.
+    pub fn excited(&self, factor: f64) -> Result<Self, Error> {
+        let scaled = |load: &HarmonicLoad| {
+            let by = if load.harmonic == 0 { 1.0 } else { factor };
+            let amplitude = load.amplitude.iter().map(|force| by * force).collect();
+            HarmonicLoad { harmonic: load.harmonic, amplitude }
+        };
+        let loads = self.ports.loads.iter().map(scaled).collect();
+        let ports = Arc::new(Ports { loads, ..Ports::clone(&self.ports) });
+        let (compliance, modal_base) = self.body.compliance(&self.structure, &ports)?;
+        let laws = self.laws.iter().map(|law| law.with_scaled_forces(1.0)).collect();
+        Ok(Self {
+            structure: Arc::clone(&self.structure),
+            laws: perceptible(laws, &ports.loads)?,
+            points: self.points.clone(),
+            body: self.body.clone(),
+            states: Arc::clone(&self.states),
+            ports,
+            compliance,
+            modal_base,
+        })
+    }
+
     /// Whether this is one sector of a disk in a travelling wave.
     #[must_use]
     pub fn is_travelling_wave(&self) -> bool {

@@ -26,7 +26,7 @@ pub enum Variation {
         /// What the number means to them.
         common: ParameterMode,
     },
-    /// A factor on all loads.
+    /// A factor on the loads that vary; static loads stay as they are.
     Level,
     /// The factor r of the negative damping `C + r C_neg`.
     Ratio,

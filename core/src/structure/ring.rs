@@ -180,23 +180,25 @@ impl Ring {
         [value, slope]
     }
 
-    /// The same ring with another stiffness of its contacts, all of them in a row.
+    /// The same ring with the contact stiffness and the loads of the assembled disk.
     ///
     /// # Errors
     /// As [`Ring::new`].
-    pub fn with_contact_stiffness(&self, stiffness: MatRef<'_, f64>) -> Result<Self, Error> {
-        let contacts = self.layout.contacts;
-        let own = |index: usize| {
-            let at = index * contacts;
-            stiffness.get(at..at + contacts, at..at + contacts).to_owned()
+    pub fn with_ports(&self, ports: &Ports) -> Result<Self, Error> {
+        let RingLayout { dofs, contacts, .. } = self.layout;
+        let part = |(index, part): (usize, &RingSector)| {
+            let at = index * contacts..(index + 1) * contacts;
+            let own = |load: &HarmonicLoad| {
+                let amplitude = load.amplitude[index * dofs..][..dofs].to_vec();
+                HarmonicLoad { harmonic: load.harmonic, amplitude }
+            };
+            RingSector {
+                stiffness: ports.stiffness.get(at.clone(), at).to_owned(),
+                loads: ports.loads.iter().map(own).collect(),
+                ..part.clone()
+            }
         };
-        let parts = self
-            .parts
-            .iter()
-            .enumerate()
-            .map(|(index, part)| RingSector { stiffness: own(index), ..part.clone() })
-            .collect();
-        Self::new(parts, self.coupling.clone())
+        Self::new(self.parts.iter().enumerate().map(part).collect(), self.coupling.clone())
     }
 
     /// The disk as one structure, with all contacts and loads.

@@ -30,8 +30,8 @@ class FitParameter:
     ----------
     name : str
         "pad.friction"; "friction", of all contacts that have it; "damping.ratio", "damping.mass",
-        "damping.stiffness", of the law of the structure's damping; "level", a factor on all forces;
-        "load", a factor on the static ones.
+        "damping.stiffness", of the law of the structure's damping; "level", a factor on the forces
+        that vary; "load", a factor on the static ones.
     low, high : float
         Bounds.
     """
@@ -119,16 +119,12 @@ def applied(model: Model, parameters: Sequence[FitParameter], values: Float) -> 
 
 
 def _loaded(model: Model, factor: float) -> Model:
-    forces = [
-        one if one.harmonic else replace(one, amplitude=factor * one.amplitude)
-        for one in model.forces
-    ]
-    if all(one.harmonic for one in forces):
+    if all(one.harmonic for one in model.forces):
         raise ModelError(
             "the model has no static load; give it a ss.Force(..., harmonic=0)",
             study="the model has no static load; give a [[force]] with harmonic = 0",
         )
-    return model.replaced(forces=forces)
+    return model.scaled(load=factor)
 
 
 def _damped(structure: Structure, key: str, value: float) -> Structure:

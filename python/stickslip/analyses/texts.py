@@ -221,7 +221,7 @@ TEXTS = {
     "range, and the response may be higher outside: widen omega.",
     "varied-together": "All of {_names} have the same {_parameter}.",
     "varied-together/factor": "Each of {_names} has its own {_parameter} times the factor.",
-    "varied-together/level": "The level multiplies every force, static ones included.",
+    "varied-together/level": "The level multiplies the forces that vary; static loads stay.",
     "rigid-limit": "Stiffnesses above {_twice:.4g} N/m were not solved: an infinite stiffness is "
     "the limit of {stiffness:.4g} and {_twice:.4g} N/m, some hundred times the stiffness of the "
     "structure at the contact, taken as linear in 1/k_d, and finite ones lie on the same line; the "

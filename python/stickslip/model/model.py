@@ -168,20 +168,25 @@ class Model:
             )
         return contact, 0
 
-    def scaled(self, *, force: float = 1.0, slip_force: float = 1.0) -> Self:
-        """Return the model at another level of excitation or preload.
+    def scaled(self, *, force: float = 1.0, load: float = 1.0, slip_force: float = 1.0) -> Self:
+        """Return the model at another level of excitation, static load or preload.
 
-        `force` multiplies every force amplitude, static loads included, `slip_force`, which is not
-        negative, every slip force, of Coulomb contacts by their preload; contacts that never slip
+        `force` multiplies the amplitude of every force that varies, or of the static ones where
+        none does; `load` the static ones, those of dampers included; `slip_force`, which is not
+        negative, every slip force, of Coulomb contacts by their preload. Contacts that never slip
         stay so.
         """
         force = real_number(force, "factor on the forces")
+        load = real_number(load, "factor on the static loads")
         slip_force = real_number(slip_force, "factor on the slip forces")
         if slip_force < 0.0:
             raise ModelError(f"factor on the slip forces: {slip_force:g} is negative; give >= 0")
+        of_static = load if any(one.harmonic for one in self.forces) else load * force
+        factors = [force if one.harmonic else of_static for one in self.forces]
+        pairs = zip(self.forces, factors, strict=True)
         return self.replaced(
             contacts=[contact.scaled(slip_force) for contact in self.contacts],
-            forces=[replace(one, amplitude=one.amplitude * force) for one in self.forces],
+            forces=[replace(one, amplitude=one.amplitude * factor) for one, factor in pairs],
         )
 
     def replaced(

@@ -18,7 +18,7 @@ from stickslip.results.periodic import key_of
 from stickslip.settings.balance import BalanceSettings
 
 COMMON = {"level": "m", "omega": "m s/rad"}
-"""What belongs to no contact: a factor on all forces, and the excitation frequency."""
+"""What belongs to no contact: a factor on the forces that vary, and the excitation frequency."""
 
 _SAME = 0.05
 """Relative difference of two amplitudes up to which they are those of one branch."""
@@ -80,7 +80,7 @@ class Sensitivities(ContactMotion):
         parameter : str, optional
             A parameter of the contact's law ("slip_force", "stiffness"). Of several points, and
             without a contact of all contacts: changed together by the same amount. Also "level", a
-            factor on all forces, at its value 1, and "omega", the frequency. Default: all
+            factor on the forces that vary, at its value 1, and "omega", the frequency. Default: all
             parameters.
 
         Returns

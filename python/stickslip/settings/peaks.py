@@ -135,8 +135,8 @@ class OptimumKeys(PeakKeys):
 
     parameter: Annotated[Parameter, ONE_OF] = Field(
         default="slip_force",
-        description='What is varied. With "level", a factor on all forces, the amplitude per unit '
-        "of level is made least, as friction depends on the ratio of force and slip force.",
+        description='What is varied. With "level", a factor on the forces that vary, the amplitude '
+        "per unit of level is made least: friction depends on the ratio of force and slip force.",
     )
     bounds: Annotated[tuple[float, float], PlainValidator(_bounds), _PAIR] | None = Field(
         default=None,

@@ -41,7 +41,9 @@ class ParameterKeys(Settings):
         "of a rigid contact, and common values above 500 times the stiffness of the structure lie "
         "on the line in 1/k_d towards it.",
     )
-    level: Levels | None = Field(default=None, description="Instead: factors on all forces.")
+    level: Levels | None = Field(
+        default=None, description="Instead: factors on the forces that vary."
+    )
     friction: Frictions | None = Field(
         default=None, description="Instead: coefficients of friction of Coulomb contacts."
     )

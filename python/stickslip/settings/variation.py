@@ -94,7 +94,7 @@ class Variation(ParameterMode):
     """What is varied."""
 
     parameter: Annotated[Swept, ONE_OF] = Field(
-        description="A parameter of contacts, or a factor on all forces."
+        description="A parameter of contacts, or a factor on the forces that vary."
     )
     contacts: Annotated[tuple[Chosen, ...], Strict(False)] = Field(
         default=(),

@@ -73,7 +73,7 @@ class AnalysisTable(Table):
 
     @property
     def levels(self) -> tuple[float, ...] | None:
-        """Factors on every force, one result each; None: there is one result."""
+        """Levels of the forces, one result each; None: there is one result."""
         return getattr(self, "level_factors", None)
 
     @property
@@ -94,6 +94,10 @@ class AnalysisTable(Table):
         """Return the table with the numbers of the files that it names."""
         return self
 
+    def at_level(self, model: Model, level: float) -> Model:
+        """Return the model at a level of the forces."""
+        return model.scaled(force=level)
+
     def run(self, model: Model, progress: Progress, shown: Sequence[str] = ()) -> Result:
         """Compute one result, accurate at the DOFs that the study shows."""
         return type(self).analysis(model, settings=self, progress=progress)
@@ -105,7 +109,8 @@ class LevelEntries(AnalysisTable):
     level_factors: Some[Factor] | None = Field(
         default=None,
         alias="levels",
-        description="Factors on every force: one result each; left out: the forces as written.",
+        description='Factors on the forces that vary, of kind "static" on the static loads: one '
+        "result each; left out: the forces as written.",
         examples=[[0.5, 1, 2]],
     )
 
@@ -166,6 +171,10 @@ class StaticTable(StaticKeys, LevelEntries):
 
     kind: Literal["static"] = Field(description="The analysis.")
     analysis: ClassVar = static_response
+
+    def at_level(self, model: Model, level: float) -> Model:
+        """Return the model at a level of the static loads."""
+        return model.scaled(load=level)
 
 
 class DamperCurveTable(DamperKeys, AnalysisTable):

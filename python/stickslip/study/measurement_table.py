@@ -60,7 +60,7 @@ class MeasurementTable(Table):
         "that DOF, else modal ones [m kg^(1/2)].",
     )
     name: Text | None = Field(default=None, description="Its name in tables and pictures.")
-    level: Factor = Field(default=1.0, description="Factor on all forces in this test.")
+    level: Factor = Field(default=1.0, description="Factor on the forces that vary in this test.")
     at: dict[str, Number] = Field(
         default_factory=dict,
         description="Parameters that this test had of its own, by name, in SI units.",

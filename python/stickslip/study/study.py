@@ -40,7 +40,7 @@ class Case:
     name : str
         Name of the study, with the level when there are several: ``"snecma-beam-20.313"``.
     level : float or None
-        Factor on every force; None when the study has no levels.
+        Factor on the forces that vary; None when the study has no levels.
     model : Model
         The model at that level.
     """
@@ -146,8 +146,9 @@ class Study:
         levels = self.tables.analysis.levels
         if levels is None:
             return (Case(self.name, None, self.model),)
+        at_level = self.tables.analysis.at_level
         return tuple(
-            Case(f"{self.name}-{level_name(level)}", level, self.model.scaled(force=level))
+            Case(f"{self.name}-{level_name(level)}", level, at_level(self.model, level))
             for level in levels
         )
 
@@ -206,7 +207,7 @@ class Study:
 
         def at_speed(speed: float) -> Model:
             model = model_of(at_speed_of(self.tables, speed), self.folder)
-            return model if case.level is None else model.scaled(force=case.level)
+            return model if case.level is None else analysis.at_level(model, case.level)
 
         if keys is None:
             turns = analysis.of_speed and depends_on_speed(self.tables)
