@@ -42,9 +42,7 @@ impl Body {
                     "waves",
                 ))
             }
-            Self::Ring(ring) => {
-                Ok((Arc::new(ring.with_ports(ports)?), "sectors"))
-            }
+            Self::Ring(ring) => Ok((Arc::new(ring.with_ports(ports)?), "sectors")),
         }
     }
 }
