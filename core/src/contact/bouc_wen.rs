@@ -12,7 +12,7 @@ use super::{ContactLaw, Motion, Parameter, Parameters};
 use crate::Error;
 use faer::Mat;
 
-/// Longest step in v of the fourth-order scheme.
+/// Longest step in v of the fourth-order scheme, of which the knee of a large exponent is a short one.
 const STEP: f64 = 0.02;
 /// Distance from the limit at which the force stays there: closer to it rounding may stop the steps.
 const AT_LIMIT: f64 = 1e-14;
@@ -80,7 +80,7 @@ impl BoucWen {
             if sign * y >= 1.0 - AT_LIMIT {
                 return [sign, 0.0, 0.0];
             }
-            let h = sign * left.min(STEP);
+            let h = sign * left.min(STEP.min(self.exponent.recip()));
             let one = self.rate(y, sign);
             let two = self.rate(y + 0.5 * h * one[0], sign);
             let three = self.rate(y + 0.5 * h * two[0], sign);

@@ -91,7 +91,7 @@ impl HeldPool<'_> {
     }
 
     fn starts(&self, nominal: &HeldMotion, survey: usize) -> Vec<Vec<f64>> {
-        let slots = nominal.u.len() / nominal.sliders.len().max(1);
+        let slots = (nominal.u.len() / nominal.sliders.len().max(1)).max(1);
         let turned = |of: &[f64], [re, im]: &[f64; 2]| {
             let mut u = of.to_vec();
             let harmonics = u.chunks_exact_mut(slots).flat_map(|own| own[1..].chunks_exact_mut(2));

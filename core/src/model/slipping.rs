@@ -18,7 +18,7 @@ impl Model {
         let (stick, stiffness) = self.partition(slipping)?;
         let rows = picked(&self.ports.rows, &stick);
         let restrained = self.structure.restrained_stiffness(&rows.into(), &stiffness.into());
-        natural_frequencies(self.structure.mass(), restrained.as_ref())
+        natural_frequencies(self.structure.mass(), restrained, self.structure.massless())
     }
 
     /// The same for a travelling wave, at a nodal diameter of its disk.

@@ -108,3 +108,23 @@ impl<T: ComplexField<Real = f64>> StuckModes<T> {
         Ok(Self { modes: Modes { omega_squared, shapes: whole }, statics })
     }
 }
+
+/// Squared natural frequencies above minus this share of the highest are rounding of zero.
+const ROUNDING: f64 = 1e-8;
+
+/// Natural frequencies [rad/s] of mass and stiffness, ascending; DOFs without mass have none.
+///
+/// # Errors
+/// As [`modes`], or the structure is statically unstable.
+pub fn natural_frequencies(
+    mass: MatRef<'_, f64>,
+    stiffness: Mat<f64>,
+    massless: &[usize],
+) -> Result<Vec<f64>, Error> {
+    let StuckModes { modes, .. } = StuckModes::new(mass, stiffness, massless)?;
+    let highest = modes.omega_squared.iter().fold(0.0_f64, |m, w| m.max(w.abs()));
+    match modes.omega_squared.first() {
+        Some(&squared) if squared < -ROUNDING * highest => Err(Error::Unstable { squared }),
+        _ => Ok(modes.frequencies()),
+    }
+}

@@ -152,9 +152,10 @@ impl ModalCompliance {
         let substituted = statics.ncols() > 0;
         let law = law && !substituted;
         let frequencies = [&stuck, &free].map(HermitianModes::frequencies);
-        let of_real = |(modes, damping): (HermitianModes, Vec<f64>), floor| {
+        let of_real = |(modes, damping): (HermitianModes, Vec<f64>), floor: f64| {
             let left = modes.shapes.adjoint().to_owned();
-            let spectrum = Spectrum::Real { omega_squared: modes.omega_squared, damping, floor };
+            let floors = floors(floor, (&rows * &modes.shapes).as_ref());
+            let spectrum = Spectrum::Real { omega_squared: modes.omega_squared, damping, floors };
             (spectrum, modes.shapes, left)
         };
         let in_stuck = (!law).then(|| project(false));
@@ -214,7 +215,11 @@ impl ModalCompliance {
         let contacts = Arc::new(complex((rows * &shapes).as_ref()));
         Self {
             base: ModalBase::Free,
-            spectrum: Spectrum::Real { omega_squared, damping, floor: FREE_FLOOR },
+            spectrum: Spectrum::Real {
+                floors: floors(FREE_FLOOR, contacts.as_ref().as_ref()),
+                omega_squared,
+                damping,
+            },
             right: Arc::new(complex(shapes.as_ref())),
             contact_right: Arc::clone(&contacts),
             contact_left: contacts,
@@ -281,6 +286,13 @@ impl ModalCompliance {
             ours.contact.iter().zip(&theirs.contact).all(|(a, b)| (a - b).norm() <= 1e-8 * scale)
         })
     }
+}
+
+/// The floors of modes, from what the contacts see of them: those that move none are modes of the stuck structure,
+/// too, and resonate.
+fn floors(floor: f64, contacts: MatRef<'_, c64>) -> Vec<f64> {
+    let moves = |j: usize| (0..contacts.nrows()).any(|i| contacts[(i, j)].norm() > 0.0);
+    (0..contacts.ncols()).map(|j| if moves(j) { floor } else { 0.0 }).collect()
 }
 
 /// The columns of two matrices beside one another.

@@ -40,21 +40,20 @@ impl ModalCompliance {
         self.loads.iter().find(|(order, _)| *order == harmonic).map(|(_, load)| load.as_slice())
     }
 
-    /// Refuses a frequency at which an undamped mode of the stuck base resonates.
+    /// Refuses a frequency at which an undamped mode of the stuck structure resonates: one of the stuck base, or
+    /// one of the free base that moves no contact.
     fn check_resonance(&self, harmonic: usize, omega: f64) -> Result<(), Error> {
         let Spectrum::Real { omega_squared, damping, .. } = &self.spectrum else {
             return Ok(());
         };
-        if self.base != ModalBase::Stuck {
-            return Ok(());
-        }
         let squared = (harmonic as f64 * omega).powi(2);
         for (j, (&natural, &c)) in omega_squared.iter().zip(damping).enumerate() {
             let distance = (natural - squared).abs() + harmonic as f64 * omega * c.abs();
             let moved =
                 (0..self.contact_left.nrows()).any(|i| self.contact_left[(i, j)].norm() > 0.0);
             let loaded = || self.load(harmonic).is_some_and(|load| load[j].norm() > 0.0);
-            if resonates(distance, squared, moved) && (moved || loaded()) {
+            let counts = if moved { self.base == ModalBase::Stuck } else { loaded() };
+            if resonates(distance, squared, moved) && counts {
                 return Err(Error::UndampedResonance {
                     omega,
                     harmonic,

@@ -191,25 +191,6 @@ impl RealModes {
     }
 }
 
-/// Squared natural frequencies above minus this share of the highest are rounding of zero.
-const ROUNDING: f64 = 1e-8;
-
-/// Natural frequencies [rad/s] of mass and stiffness, ascending.
-///
-/// # Errors
-/// As [`modes`], or the structure is statically unstable.
-pub fn natural_frequencies(
-    mass: MatRef<'_, f64>,
-    stiffness: MatRef<'_, f64>,
-) -> Result<Vec<f64>, Error> {
-    let modes = modes(mass, stiffness)?;
-    let highest = modes.omega_squared.iter().fold(0.0_f64, |m, w| m.max(w.abs()));
-    match modes.omega_squared.first() {
-        Some(&squared) if squared < -ROUNDING * highest => Err(Error::Unstable { squared }),
-        _ => Ok(modes.frequencies()),
-    }
-}
-
 pub(crate) fn complex(matrix: MatRef<'_, f64>) -> Mat<c64> {
     Mat::from_fn(matrix.nrows(), matrix.ncols(), |i, j| c64::new(matrix[(i, j)], 0.0))
 }

@@ -48,6 +48,9 @@ pub struct Ring {
     /// that reach it, and the interface.
     pub(super) sectors: Vec<Box<dyn Compliance>>,
     coupling: RingCoupling,
+    /// Stiffness on the interface by which stuck contacts couple each sector to the next one; one for all
+    /// where there are none.
+    contact_links: Vec<Mat<f64>>,
     pub(super) layout: RingLayout,
     frequencies: OnceLock<[Vec<f64>; 2]>,
     pub(super) highest: f64,
@@ -120,8 +123,11 @@ impl Ring {
             highest = sector.stuck_frequencies().iter().copied().fold(highest, f64::max);
             sectors.push(sector);
         }
+        let different = if layout.between.is_empty() { 1 } else { parts.len() };
+        let contact_links =
+            parts[..different].iter().map(|part| contact_link(part, &layout)).collect();
         let frequencies = OnceLock::new();
-        Ok(Self { parts, sectors, coupling, layout, frequencies, highest, outline })
+        Ok(Self { parts, sectors, coupling, contact_links, layout, frequencies, highest, outline })
     }
 
     /// Number of sectors.
@@ -149,29 +155,22 @@ impl Ring {
             receptances.push(&own);
         }
         // Couplings are the same all around, contacts between neighbours need not be.
-        let different = if self.layout.between.is_empty() { 1 } else { self.sectors.len() };
-        let links = (0..different).map(|index| self.link(index, harmonic as f64, omega)).collect();
+        let links = (0..self.contact_links.len())
+            .map(|index| self.link(index, harmonic as f64, omega))
+            .collect();
         Ok(RingOrder::new(self.layout.clone(), receptances, links))
     }
 
     /// Coupling of a sector to the next one on the interface, and its derivative in ω.
     fn link(&self, index: usize, order: f64, omega: f64) -> [Mat<c64>; 2] {
-        let RingLayout { between, interface, .. } = &self.layout;
+        let interface = &self.layout.interface;
         let RingCoupling { mass, damping, stiffness } = &self.coupling;
-        let part = &self.parts[index];
         let size = interface.len();
+        let w = order * omega;
         let value = Mat::from_fn(size, size, |i, j| {
-            let (row, column) = (interface[i], interface[j]);
-            let contacts: f64 = between
-                .iter()
-                .flat_map(|&a| between.iter().map(move |&b| (a, b)))
-                .map(|(a, b)| part.own[(a, row)] * part.stiffness[(a, b)] * part.next[(b, column)])
-                .sum();
-            let w = order * omega;
-            c64::new(
-                stiffness[(row, column)] + contacts - w * w * mass[(row, column)],
-                w * damping[(row, column)],
-            )
+            let at = (interface[i], interface[j]);
+            let stiff = stiffness[at] + self.contact_links[index][(i, j)];
+            c64::new(stiff - w * w * mass[at], w * damping[at])
         });
         let slope = Mat::from_fn(size, size, |i, j| {
             let at = (interface[i], interface[j]);
@@ -263,6 +262,17 @@ impl Ring {
             [true, false].map(|stuck| frequencies(stuck).unwrap_or_default())
         })
     }
+}
+
+/// `Bᵀ D B'` on the interface, of the stuck contacts between a sector and the next one.
+fn contact_link(part: &RingSector, layout: &RingLayout) -> Mat<f64> {
+    let RingLayout { between, interface, .. } = layout;
+    let on = |rows: &Mat<f64>| {
+        Mat::from_fn(between.len(), interface.len(), |a, i| rows[(between[a], interface[i])])
+    };
+    let size = between.len();
+    let stiffness = Mat::from_fn(size, size, |a, b| part.stiffness[(between[a], between[b])]);
+    on(&part.own).transpose() * (stiffness * on(&part.next))
 }
 
 fn add(matrix: &mut Mat<f64>, row: usize, column: usize, block: MatRef<'_, f64>) {

@@ -104,12 +104,12 @@ impl Compliance for Ring {
             columns.push(order.respond(false, &unit));
             unit[column] = c64::new(0.0, 0.0);
         }
-        for (values, column) in out.contact.chunks_exact_mut(contacts).zip(&columns) {
+        for (values, column) in out.contact.chunks_exact_mut(contacts.max(1)).zip(&columns) {
             values.copy_from_slice(&column.contact);
         }
         if let Some((contact_slope, stuck_slope)) = &mut out.slope {
             stuck_slope.copy_from_slice(&order.respond_rate(true, &stuck).contact);
-            for (values, column) in contact_slope.chunks_exact_mut(contacts).zip(&columns) {
+            for (values, column) in contact_slope.chunks_exact_mut(contacts.max(1)).zip(&columns) {
                 values.copy_from_slice(&order.respond_rate(false, column).contact);
             }
         }

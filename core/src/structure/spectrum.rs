@@ -11,8 +11,8 @@ pub(super) enum Spectrum {
     Real {
         omega_squared: Vec<f64>,
         damping: Vec<f64>,
-        /// Least modulus of a denominator, relative to ω².
-        floor: f64,
+        /// Least modulus of each mode's denominator, relative to ω².
+        floors: Vec<f64>,
     },
     /// `1 / (iω − s_j)`.
     Complex { poles: Vec<c64> },
@@ -22,14 +22,14 @@ impl Spectrum {
     /// Weight of mode j at `omega` and its derivative in ω.
     pub(super) fn weight(&self, j: usize, omega: f64) -> (c64, c64) {
         match self {
-            Self::Real { omega_squared, damping, floor } => {
+            Self::Real { omega_squared, damping, floors } => {
                 let squared = omega * omega;
                 let mut denominator = c64::new(omega_squared[j] - squared, omega * damping[j]);
                 // An undamped mode of the free base met exactly is no resonance of the stuck
                 // structure, but leaves 0/0. A floor ε on the denominator costs a relative error ε
                 // and a cancellation 1e-16/ε: least at the square root of rounding.
-                if *floor > 0.0 && denominator.norm() < floor * squared {
-                    denominator = c64::new(0.0, floor * squared);
+                if denominator.norm() < floors[j] * squared {
+                    denominator = c64::new(0.0, floors[j] * squared);
                 }
                 let weight = denominator.inv();
                 let slope = weight * weight * c64::new(2.0 * omega, -damping[j]);

@@ -173,20 +173,31 @@ impl<L: Deref<Target: ContactLaw>> HarmonicForce for Aft<L> {
     fn parameter_slope(&self, motion: Motion<'_>, index: usize, out: &mut [f64]) {
         out.fill(0.0);
         let Parameter { name, value, .. } = self.law.parameters()[index];
-        // A gap may be zero or negative; its scale is that of the motion.
+        // What may be zero has the scale of the motion.
         let moved = motion.displacement.iter().fold(0.0, |most: f64, u| most.max(u.abs()));
-        let step = DIFFERENCE * if name == "gap" { value.abs().max(moved) } else { value };
+        let step = DIFFERENCE
+            * match name {
+                "gap" => value.abs().max(moved),
+                _ if value != 0.0 => value.abs(),
+                Parameter::SLIP_FORCE => moved * self.law.stiffness().norm_max(),
+                _ => 1.0,
+            };
         if !(step > 0.0 && step.is_finite()) {
             return;
         }
+        // At the edge of what the law takes the difference is to one side.
+        let law_at = |at: f64| self.law.with_parameter(index, at).ok().map(|law| (law, at));
+        let end = |at: f64| law_at(at).or_else(|| law_at(value));
+        let (Some(above), Some(below)) = (end(value + 0.5 * step), end(value - 0.5 * step)) else {
+            return out.fill(f64::NAN);
+        };
         let slots = motion.table.harmonics().slots();
         let mut load = SlipLoad::default();
-        for side in [0.5, -0.5] {
-            let Ok(law) = self.law.with_parameter(index, value + side * step) else { continue };
+        let width = above.1 - below.1;
+        for (law, weight) in [(above.0, width.recip()), (below.0, -width.recip())] {
             let law = Aft { law, samples: self.samples };
             law.slip_load(motion, false, &mut load);
             let stiffness = law.law.stiffness();
-            let weight = side.signum() / step;
             for (i, series) in out.chunks_exact_mut(slots).enumerate() {
                 for (slot, slope) in series.iter_mut().enumerate() {
                     let stuck: f64 = (0..self.law.displacements())

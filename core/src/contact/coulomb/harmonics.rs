@@ -285,6 +285,12 @@ impl HarmonicForce for Coulomb {
             out.fill(0.0);
             return constant.parameter_slope(index, out);
         }
+        if index == 3 && !self.varies() && !harmonics.has_mean() {
+            // What a normal load that varies does to friction is the same in both halves of the period.
+            let (tangential, normal) = motion.displacement.split_at(out.len() - slots);
+            out[..tangential.len()].fill(0.0);
+            return out[tangential.len()..].copy_from_slice(normal);
+        }
         // A vanishing normal stiffness is differentiated in as well.
         let drive = Drive::new(self, motion, self.varies() || index == 3);
         let response = self.cycle(&drive, motion, true).response(&drive, true);
