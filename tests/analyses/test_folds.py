@@ -215,3 +215,14 @@ def test_random_systems_are_followed_and_judged(seed):
         known += 1
         assert frf.stable[at] == (growth < 1.0), (seed, at, growth)
     assert known >= doubtful
+
+
+@pytest.mark.parametrize("stiffness", [1e6, 1e7])
+def test_converged_points_along_a_range_are_balanced_at_rigid_stops(stiffness):
+    structure = ss.Structure([[1.0]], [[1.0]], [[0.05]], ["a"])
+    stop = ss.Stop("a", stiffness=stiffness, gap=3.5)
+    model = ss.Model(structure, [stop], [ss.Force("a", 1.0)])
+    frf = ss.forced_response(model, (0.5, 1.3), 5, stability=False)
+    assert frf.folds.size > 0
+    assert frf.converged.mean() > 0.95
+    assert frf.residual[frf.converged].max() <= 1e-8

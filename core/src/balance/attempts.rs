@@ -7,7 +7,8 @@ use super::settings::{resolving, Method, Resolution};
 use super::solution::{Point, PointStatus};
 use super::unknowns::Unknowns;
 use crate::solve::{
-    broyden, homotopy, newton, norm, Outcome, Parametrised as _, Report, System as _,
+    broyden, homotopy, newton, norm, NewtonSettings, Outcome, Parametrised as _, Report,
+    System as _,
 };
 use crate::Error;
 
@@ -243,7 +244,7 @@ impl ForcedBalance<'_> {
 
     /// The report of a solution, unless nothing bounds the motion, or the equations do not hold there.
     fn if_sound(&self, report: Report, x: &[f64], equations: &Condensed<'_>) -> Report {
-        if report.outcome == Outcome::Converged && !self.is_balanced(&report) {
+        if report.outcome == Outcome::Converged && !self.is_balanced(report.residual) {
             return Report { outcome: Outcome::Stalled, ..report };
         }
         if report.outcome == Outcome::Converged && !is_bounded(x, equations.stuck_response()) {
@@ -254,9 +255,14 @@ impl ForcedBalance<'_> {
 
     /// Whether the equations hold at a solution, however small the last step was that led to it: a force that
     /// jumps lets Newton's method step to and fro over the jump.
-    pub(super) fn is_balanced(&self, report: &Report) -> bool {
-        report.residual <= UNBALANCED * self.settings.newton.tolerance
+    pub(super) fn is_balanced(&self, residual: f64) -> bool {
+        is_balanced(residual, self.settings.newton)
     }
+}
+
+/// Whether a residual, relative to the motion, is that of a solution.
+pub(crate) fn is_balanced(residual: f64, settings: NewtonSettings) -> bool {
+    residual <= UNBALANCED * settings.tolerance
 }
 
 /// Whether a motion is small enough that rounding leaves the effect of the load in its digits.

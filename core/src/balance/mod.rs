@@ -48,6 +48,7 @@ mod unknowns;
 mod without_bound;
 mod work;
 
+pub(crate) use attempts::is_balanced;
 pub(crate) use cycle::oscillation;
 pub use cycle::{CycleBalance, Onset};
 pub(crate) use evaluation::Evaluated;

@@ -73,7 +73,7 @@ fn solve(
     });
     let solved = |report: &Report| {
         let bounded = is_bounded(&x, equations.stuck_response());
-        report.outcome == Outcome::Converged && balance.is_balanced(report) && bounded
+        report.outcome == Outcome::Converged && balance.is_balanced(report.residual) && bounded
     };
     let Some(report) = report.filter(solved) else {
         // The same equations with homotopy at hand, or the word for why there is no solution.

@@ -4,8 +4,14 @@ use super::curve::Curve;
 use super::line_search::LineSearch;
 use super::norm;
 
-/// Weighted step after which one more is taken as the last: Newton's method squares it.
+/// Weighted step that may be the last: Newton's method squares it.
 const CLOSE: f64 = 1e-8;
+/// Residual, relative to the motion before, above which further steps follow as long as they lower it: half of what a
+/// solution may have against its own, …
+const BALANCED: f64 = 5e-9;
+/// … at most so many: contacts much stiffer than the structure make forces of a short step that are many times its
+/// length.
+const FURTHER: usize = 4;
 /// Decrease of the residual, relative to the share of a step taken, that counts as one.
 const DECREASE: f64 = 0.1;
 /// Shortest damped step.
@@ -41,8 +47,10 @@ impl Bordered<'_> {
         let mut residual = vec![0.0; size];
         let mut trial = LineSearch::new(size);
         self.evaluate(curve, z, &mut residual);
+        let (mut close, mut further) = (false, 0);
         for iteration in 1..=self.max_iterations {
-            let failed = BorderedReport { converged: false, iterations: iteration };
+            // What a step this short has found stands, whatever becomes of further ones.
+            let failed = BorderedReport { converged: close, iterations: iteration };
             let before = norm(&residual);
             if !before.is_finite() || curve.interrupted() {
                 return failed;
@@ -57,9 +65,10 @@ impl Bordered<'_> {
             }
             let longest = (FAR / length).min(1.0);
             let evaluate = |z: &[f64], out: &mut [f64]| self.evaluate(curve, z, out);
-            // A step this short is rounding, and the residual with it.
+            // The first step this short need not lower the residual.
+            let last = !close && length <= CLOSE;
             let accepts = |share: f64, after: f64| {
-                after <= (1.0 - DECREASE * share) * before || (after.is_finite() && length <= CLOSE)
+                after <= (1.0 - DECREASE * share) * before || (after.is_finite() && last)
             };
             let shares = [longest, SHORTEST.min(longest)];
             if !trial.along(evaluate, [z, &step], shares, accepts) {
@@ -67,11 +76,13 @@ impl Bordered<'_> {
             }
             z.copy_from_slice(&trial.x);
             std::mem::swap(&mut residual, &mut trial.residual);
-            if trial.length == 1.0 && length <= CLOSE {
+            close |= trial.length == 1.0 && length <= CLOSE;
+            if close && (trial.size <= BALANCED || further == FURTHER) {
                 return BorderedReport { converged: true, iterations: iteration };
             }
+            further += usize::from(close);
         }
-        BorderedReport { converged: false, iterations: self.max_iterations }
+        BorderedReport { converged: close, iterations: self.max_iterations }
     }
 
     fn evaluate(&self, curve: &mut dyn Curve, z: &[f64], out: &mut [f64]) {

@@ -31,7 +31,7 @@ pub struct CycleBalance<'a> {
 pub(super) struct Evaluation<'a> {
     z: Vec<f64>,
     pub(super) equations: Condensed<'a>,
-    residual: Vec<f64>,
+    pub(super) residual: Vec<f64>,
 }
 
 impl<'a> CycleBalance<'a> {

@@ -1,23 +1,28 @@
 //! What is read off a limit cycle of the harmonic balance: displacements, forces, error.
 
 use super::balance::{CycleBalance, Evaluation};
+use crate::balance::attempts::is_balanced;
 use crate::balance::solution::{Point, PointStatus};
 use crate::fourier::{Harmonics, SampleTable};
-use crate::solve::Curve as _;
+use crate::solve::{norm, Curve as _, NewtonSettings};
 use crate::structure::Quantity;
 use faer::linalg::solvers::Solve as _;
 use faer::{c64, Mat};
 
 impl CycleBalance<'_> {
     /// Motion, forces and friction work at a point of the curve, with t = 0 at the maximum of the
-    /// DOF `phase`.
+    /// DOF `phase`; it says so if its equations do not hold.
     pub fn point(&mut self, z: &[f64], phase: usize) -> Point {
         let compliance = self.family.compliance();
         let observe: Vec<usize> = (0..compliance.dofs()).collect();
         let (u, omega) = (&z[..z.len() - 2], z[z.len() - 2]);
-        let recovered = self
-            .evaluate(z)
-            .and_then(|at| at.equations.recover(u, &observe, PointStatus::Converged).ok());
+        let recovered = self.evaluate(z).and_then(|at| {
+            let residual = norm(&at.residual) / norm(u).max(f64::MIN_POSITIVE);
+            let balanced = is_balanced(residual, NewtonSettings::default());
+            let status = if balanced { PointStatus::Converged } else { PointStatus::Stalled };
+            let point = at.equations.recover(u, &observe, status).ok()?;
+            Some(Point { residual, ..point })
+        });
         let Some(mut point) = recovered else {
             let contacts = compliance.contacts();
             return Point::empty(omega, PointStatus::Stalled, observe.len(), contacts);

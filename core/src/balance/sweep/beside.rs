@@ -25,7 +25,7 @@ impl Walk<'_, '_> {
         point: &mut Point,
         resolution: Resolution,
     ) -> Result<(), Error> {
-        if self.balance.control.is_fixed() {
+        if self.balance.control.is_fixed() || !point.is_solved() {
             return Ok(());
         }
         let error = self.error_of(point);

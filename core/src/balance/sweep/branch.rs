@@ -315,13 +315,15 @@ impl Walk<'_, '_> {
         };
         let u = &z[..z.len() - 1];
         let Some((equations, _)) = curve.equations(z) else { return Ok(None) };
-        let ended = !self.balance.observe.is_empty()
+        let ended = point.is_solved()
+            && !self.balance.observe.is_empty()
             && !self.balance.estimate(equations, u, &mut point, true)?;
         // What a search was to find that was ended is not where it was found.
         Ok((!ended && !self.balance.is_ended()).then_some(point))
     }
 
-    /// Displacements and forces of a point of the curve; nothing where its equations are not defined.
+    /// Displacements and forces of a point of the curve, which says so if its equations do not hold; nothing where
+    /// they are not defined.
     pub(super) fn recovered(
         &self,
         curve: &mut ForcedCurve<'_>,
@@ -332,12 +334,15 @@ impl Walk<'_, '_> {
         let unknowns = Some(curve.series(z));
         let Some((equations, residual)) = curve.equations(z) else { return Ok(None) };
         let u = &z[..z.len() - 1];
-        let point = equations.recover(u, self.balance.observe, PointStatus::Converged)?;
-        let none = vec![0.0; self.balance.observe.len()];
-        let (error_estimate, sampling_error) = (none.clone(), none);
+        let balanced = self.balance.is_balanced(residual);
+        let status = if balanced { PointStatus::Converged } else { PointStatus::Stalled };
+        let mut point = equations.recover(u, self.balance.observe, status)?;
+        if balanced {
+            point.error_estimate.fill(0.0);
+            point.sampling_error.fill(0.0);
+        }
         let samples = resolution.samples;
-        let known = Point { samples, residual, iterations, unknowns, ..point };
-        Ok(Some(Point { error_estimate, sampling_error, ..known }))
+        Ok(Some(Point { samples, residual, iterations, unknowns, ..point }))
     }
 
     /// Largest relative distance of the observed DOFs from a straight line between the last point and

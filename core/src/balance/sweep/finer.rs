@@ -20,7 +20,7 @@ impl Walk<'_, '_> {
         self.judge_beside(curve, point, at)?;
         while let Some(more) = self.wanted(point, kept) {
             kept = more;
-            let Some(finer) = self.finer(point, kept)? else {
+            let Some(finer) = self.finer(point, kept)?.filter(Point::is_solved) else {
                 // What is solved stands, with the status that it has over given frequencies.
                 point.status = PointStatus::EffortLimit;
                 break;
@@ -30,9 +30,9 @@ impl Walk<'_, '_> {
         Ok(kept)
     }
 
-    /// The resolution that a point lacks, if any.
+    /// The resolution that a solved point lacks, if any.
     pub(super) fn wanted(&mut self, point: &mut Point, at: Resolution) -> Option<Resolution> {
-        if self.balance.control.is_fixed() {
+        if self.balance.control.is_fixed() || !point.is_solved() {
             return None;
         }
         match self.balance.judge(point) {
@@ -105,6 +105,28 @@ mod tests {
         ];
         let amplitude = vec![c64::new(0.5, 0.0), c64::new(0.0, 0.0)];
         Model::new(structure, contacts, vec![HarmonicLoad { harmonic: 1, amplitude }]).unwrap()
+    }
+
+    /// More harmonics are no answer to equations that do not hold: the point keeps the status that says so.
+    #[test]
+    fn a_point_off_the_curve_is_not_told_as_converged() {
+        let (model, omega) = (model(), 1.2);
+        let few = Resolution { harmonics: 3, samples: None };
+        let settings = Settings { tolerance: 1e-6, ..Settings::default() };
+        let mut balance = ForcedBalance::new(&model, settings, &[0, 1]).unwrap();
+        let last = balance.solve_with(few, omega - 0.01, None).unwrap();
+        let solution = balance.solve_with(few, omega, None).unwrap();
+        let mut walk = Walk::at_end(&mut balance, vec![Arc::new(last)], (1.0, 2.0));
+        let ask = || false;
+        let table = walk.balance.table(few.harmonics);
+        let given = walk.balance.evaluated(None).unwrap();
+        let mut curve = ForcedCurve::new(given, &table, Residual::Centred, &ask);
+        let mut z = curve.point(solution.unknowns().unwrap(), omega);
+        z[0] *= 1.0 + 1e-6;
+        let mut point = walk.solved(&mut curve, &z, few, 0).unwrap().unwrap();
+        assert!(point.residual > 1e-8 && point.status == PointStatus::Stalled);
+        walk.climb(&mut curve, &mut point, few).unwrap();
+        assert_eq!((point.status, point.harmonics), (PointStatus::Stalled, 3));
     }
 
     /// A point of few harmonics at the end of a range of no length, where the plane across the way to it

@@ -45,12 +45,13 @@ impl Walk<'_, '_> {
         mut kept: Resolution,
         points: [&Point; 3],
     ) -> Result<Option<Point>, Error> {
-        let Some([a, b, c]) = in_unknowns(curve, points) else { return Ok(None) };
+        let Some(known) = in_unknowns(curve, points) else { return Ok(None) };
+        let [a, b, c] = on_curve(curve, known, points.map(|one| one.resolution() == kept));
         let Some(z) = Branch::turn(curve, &a, &b, &c) else { return Ok(None) };
         let Some(mut fold) = self.judged(curve, [&z, &a, &c], kept)? else { return Ok(None) };
         while let Some(more) = self.wanted(&mut fold, kept) {
             kept = more;
-            let Some(finer) = self.finer_fold(points, kept)? else {
+            let Some(finer) = self.finer_fold(points, kept)?.filter(Point::is_solved) else {
                 fold.status = PointStatus::EffortLimit;
                 break;
             };
@@ -110,7 +111,7 @@ impl Walk<'_, '_> {
     ) -> Result<bool, Error> {
         let observe = self.balance.observe;
         let slipping = self.balance.nonlinear_points(point);
-        if observe.is_empty() || slipping == 0 {
+        if observe.is_empty() || slipping == 0 || !point.is_solved() {
             return Ok(true);
         }
         if let Some(samples) = resolution.samples {
@@ -172,6 +173,16 @@ impl Walk<'_, '_> {
 fn in_unknowns(curve: &ForcedCurve<'_>, points: [&Point; 3]) -> Option<[Vec<f64>; 3]> {
     let [a, b, c] = points.map(|point| Some(curve.point(point.unknowns()?, point.omega)));
     Some([a?, b?, c?])
+}
+
+/// Points that are not `of` a curve, but of one of another resolution, moved onto it: the farthest may be the fold.
+fn on_curve(curve: &mut ForcedCurve<'_>, [a, b, c]: [Vec<f64>; 3], of: [bool; 3]) -> [Vec<f64>; 3] {
+    let mut moved = |[from, to]: [&[f64]; 2], share: f64, own: bool| {
+        (!own).then(|| across(curve, from, to, share)).flatten()
+    };
+    let [x, y, z] =
+        [moved([&a, &b], 0.0, of[0]), moved([&a, &b], 1.0, of[1]), moved([&b, &c], 1.0, of[2])];
+    [x.unwrap_or(a), y.unwrap_or(b), z.unwrap_or(c)]
 }
 
 /// The fold of a curve that three points lie close to, and a point of the curve on either side of it.

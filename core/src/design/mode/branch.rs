@@ -6,11 +6,13 @@ use super::harmonics::{fewest, Step, Truncation};
 use super::point::{Interaction, ModePoint};
 use super::settings::{Amplitudes, ModeEnd, ModeMethod, ModeSettings};
 use super::start::{at_rest, linear_mode, Linear};
-use crate::balance::{HarmonicChoice, PointStatus, Progress};
+use crate::balance::{is_balanced, HarmonicChoice, PointStatus, Progress};
 use crate::contact::Residual;
 use crate::fourier::{Harmonics, SampleTable};
 use crate::model::Model;
-use crate::solve::{across, at_parameter, between, norm, Advance, Continuation, Steps};
+use crate::solve::{
+    across, at_parameter, between, norm, Advance, Continuation, NewtonSettings, Steps,
+};
 use crate::timing::Profile;
 use crate::Error;
 use std::sync::Arc;
@@ -333,7 +335,9 @@ impl<'a> Walk<'a> {
         }
         // An error that is not known is not below the tolerance.
         let enough = step.is_some_and(|step| step.error() <= self.settings.tolerance);
-        if !enough && self.settings.harmonics == HarmonicChoice::Auto {
+        if !is_balanced(residual, NewtonSettings::default()) {
+            point.response.status = PointStatus::Stalled;
+        } else if !enough && self.settings.harmonics == HarmonicChoice::Auto {
             point.response.status = PointStatus::HarmonicsLimit;
         }
         self.profile.recovery += start.elapsed();

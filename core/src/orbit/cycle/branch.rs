@@ -139,7 +139,8 @@ impl Finder<'_> {
             let enough = few || rung == last || interrupted();
             if settings.harmonics == HarmonicChoice::Auto {
                 for cycle in &mut cycles {
-                    if relative(&cycle.response) > settings.tolerance {
+                    let response = &cycle.response;
+                    if response.is_solved() && relative(response) > settings.tolerance {
                         cycle.response.status = PointStatus::HarmonicsLimit;
                     }
                 }
