@@ -74,3 +74,18 @@ def test_orbits_of_slip_too_stiff_to_be_followed_say_so_at_once() -> None:
     assert list(found.status) == [ss.Status.STEPS_LIMIT]
     # It was granted four million steps.
     assert found.counters["evaluations"] < 100_000
+
+
+@pytest.mark.parametrize("slip_force", [1e-3, 1e-2])
+def test_bouc_wen_peaks_far_beyond_slip_take_few_points(slip_force):
+    structure = ss.Structure([[1.0]], [[1.0]], [[2e-4]], ["a"])
+    peaks, points = {}, {}
+    for law in (ss.BoucWen, ss.Jenkins):
+        contact = law("a", stiffness=1.0, slip_force=slip_force)
+        model = ss.Model(structure, [contact], [ss.Force("a", 1.0)])
+        curve = ss.damper_curve(model, slip_force=[slip_force], dof="a")
+        assert list(curve.status) == ["converged"]
+        peaks[law], points[law] = curve.amplitude[0], curve.counters["points"]
+    # Both are Coulomb friction there, but for the samples of the one.
+    assert peaks[ss.BoucWen] == pytest.approx(peaks[ss.Jenkins], rel=1e-5)
+    assert points[ss.BoucWen] < 4 * points[ss.Jenkins]

@@ -85,6 +85,8 @@ pub(super) struct Search<'a, 'b> {
     loaded: Vec<usize>,
     pub(super) balance: &'b mut ForcedBalance<'a>,
     pub(super) envelope: Envelope,
+    /// Narrowest bandwidth, relative to the frequency.
+    pub(super) narrowest: f64,
     /// Points without a solution.
     failures: usize,
     /// How the last of them ended.
@@ -118,6 +120,7 @@ impl<'a, 'b> Search<'a, 'b> {
             loaded,
             balance,
             envelope,
+            narrowest,
             failures: 0,
             failure: None,
             lower_onsets: Vec::new(),

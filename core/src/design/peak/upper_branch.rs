@@ -17,8 +17,10 @@ use crate::Error;
 
 /// Largest distance of two neighbours from the line with the mean of their slopes, relative to the larger.
 const TORN: f64 = 0.25;
-/// Halvings of an interval after which they are on different branches.
-const HALVINGS: usize = 8;
+/// Halvings of an interval after which they are on different branches, and the same of one that is longer …
+const HALVINGS: [usize; 2] = [8, 24];
+/// … than this share of the narrowest bandwidth: any resonance turns within that.
+const WITHIN: f64 = 0.1;
 /// Tolerance of the curve's steps, if that of the harmonics is not larger.
 const STEPS: f64 = 0.01;
 /// By how much the curve may be higher than what is found: the error of its harmonics and steps.
@@ -43,9 +45,10 @@ impl Search<'_, '_> {
             let [mut a, mut b] = [right - 1, right].map(|i| self.envelope.samples[i].clone());
             let mut halvings = 0;
             while !are_joined(&a, &b) {
-                let Some(middle) = self.between(&a, &b)?.filter(|_| halvings < HALVINGS) else {
-                    return Ok(true);
-                };
+                let wide = b.at - a.at > WITHIN * self.narrowest * b.at;
+                let most = HALVINGS[usize::from(wide)];
+                let middle = if halvings < most { self.between(&a, &b)? } else { None };
+                let Some(middle) = middle else { return Ok(true) };
                 if are_joined(&a, &middle) {
                     a = middle;
                 } else {
