@@ -317,3 +317,20 @@ def test_bouc_wen_balances():
     later = ss.transient(model(law), 110.0, 300, scheme="rk4", steps=512, samples=512)
     last = later.displacement("a")[-512:]
     assert frf.amplitude("a")[1] == pytest.approx(0.5 * (last.max() - last.min()), rel=1e-3)
+
+
+@pytest.mark.slow
+def test_orbits_of_many_joints_at_low_frequencies_end_within_their_steps():
+    joints = [
+        ss.Masing(
+            "a", stiffness=0.5, slip_force=0.1 + 0.02 * i, backbone="exponential", name=f"j{i}"
+        )
+        for i in range(4)
+    ]
+    plain = ss.Structure(
+        np.eye(2), [[2.0, -1.0], [-1.0, 3.0]], [[0.06, -0.02], [-0.02, 0.08]], ["a", "b"]
+    )
+    orbits = ss.exact_response(ss.Model(plain, joints, [ss.Force("a", 1.0)]), [8.6e-5])
+    assert orbits.status[0] == "steps limit"
+    # An orbit takes 110000 steps there, each as long as many of another law.
+    assert orbits.counters["evaluations"] < 40000

@@ -2,7 +2,7 @@
 
 use super::closed::{left_error, Orbit};
 use super::plan::Plan;
-use super::price::work_of_steps;
+use super::price::{affordable_steps, work_of_steps};
 use super::reading::{misses, Reading};
 use super::rotation::Rotation;
 use super::settings::OrbitSettings;
@@ -187,7 +187,7 @@ impl<'a> PeriodicOrbits<'a> {
         let interrupted = || !progress(share);
         let system = Arc::clone(&self.plan.system);
         let mut shooting = Shooting::new(&system, omega, self.plan.half_wave, Some(&interrupted));
-        shooting.grant(self.plan.granted);
+        shooting.grant(self.plan.granted.min(affordable_steps(&system)));
         shooting.assume(self.plan.settings.residual);
         if let Some(rotation) = self.plan.rotation {
             shooting.rotate(rotation, &system);

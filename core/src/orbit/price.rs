@@ -63,6 +63,19 @@ pub(super) fn work_of_steps(system: &ModalSystem, steps: usize) -> f64 {
     PER_OPERATION * operations_of_step(system) * steps as f64
 }
 
+/// Steps of the flow that an orbit may take …
+const STEPS_OF_LOOPS: usize = 1 << 14;
+/// … or the work, if that is more, where a contact slips little by little: some seconds \[ns\].
+const WORK_OF_LOOPS: f64 = 6e9;
+
+/// Steps of the flow that an orbit may take for what its loops cost.
+pub(super) fn affordable_steps(system: &ModalSystem) -> usize {
+    if system.microslips().is_empty() {
+        return usize::MAX;
+    }
+    steps_for(system, WORK_OF_LOOPS / PER_OPERATION).max(STEPS_OF_LOOPS)
+}
+
 /// Operations in the time of a step. What follows a loop or the slip in a plane takes many times as long as its
 /// products tell.
 fn operations_of_step(system: &ModalSystem) -> f64 {
