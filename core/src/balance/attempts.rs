@@ -196,9 +196,9 @@ impl ForcedBalance<'_> {
         let exact =
             self.orbit_to_start_from(omega, highest).map(|orbit| orbit.contact_displacement);
         let is_exact = exact.is_some();
+        let start = exact.or_else(|| self.settled_motion(omega, highest));
         equations.granted = self.left();
-        let settled = || self.rescue.filter(|_| !self.follows())?.settled(omega, highest);
-        let Some(amplitudes) = exact.or_else(settled) else { return false };
+        let Some(amplitudes) = start else { return false };
         let orders = highest + 1;
         let mut trial = vec![0.0; x.len()];
         let points = amplitudes.chunks_exact(orders).zip(trial.chunks_exact_mut(harmonics.slots()));

@@ -76,6 +76,12 @@ impl ForcedBalance<'_> {
         self.charged(|| orbits.orbit(omega, order))
     }
 
+    /// Contact displacements up to `highest` of a motion that settles in time, where no homotopy leads on.
+    pub(super) fn settled_motion(&mut self, omega: f64, highest: usize) -> Option<Vec<c64>> {
+        let orbits = self.rescue.filter(|_| !self.is_monotone())?;
+        self.charged(|| orbits.settled(omega, highest))
+    }
+
     /// What a search for an orbit gives, within what is left of the work of the point, and on its account.
     fn charged<T>(&mut self, search: impl FnOnce() -> T) -> T {
         let Some(orbits) = self.rescue else { return search() };

@@ -43,6 +43,8 @@ pub struct OrbitInitialGuess<'a> {
     begun: Cell<(f64, bool)>,
     /// Frequency and motion that settled last, if one did: it is asked for with many numbers of harmonics.
     settled: RefCell<Option<(f64, Option<Settled>)>>,
+    /// Operations of motions that were to settle.
+    followed: Cell<f64>,
     /// Operations that the point at hand leaves for a search.
     allowed: Cell<f64>,
 }
@@ -68,6 +70,7 @@ impl<'a> OrbitInitialGuess<'a> {
             missed: Cell::new(f64::NAN),
             begun: Cell::new((f64::NAN, false)),
             settled: RefCell::new(None),
+            followed: Cell::new(0.0),
             allowed: Cell::new(PATIENCE),
         }
     }
@@ -155,7 +158,8 @@ impl ExactOrbits for OrbitInitialGuess<'_> {
         }
         let mut settled = self.settled.borrow_mut();
         if settled.as_ref().is_none_or(|(known, _)| *known != omega) {
-            let found = Settled::of(self.model, omega, PATIENCE, self.progress);
+            let (found, taken) = Settled::of(self.model, omega, self.patience(), self.progress);
+            self.followed.set(self.followed.get() + taken);
             *settled = Some((omega, found));
         }
         let (_, found) = settled.as_ref()?;
@@ -163,7 +167,9 @@ impl ExactOrbits for OrbitInitialGuess<'_> {
     }
 
     fn work(&self) -> f64 {
-        self.orbits.borrow().iter().flatten().map(|orbits| orbits.profile.work).sum()
+        let orbits = self.orbits.borrow();
+        let orbits = orbits.iter().flatten().map(|orbits| orbits.profile.work).sum::<f64>();
+        orbits + PER_OPERATION * self.followed.get()
     }
 
     fn allow(&self, work: f64) {
@@ -172,5 +178,36 @@ impl ExactOrbits for OrbitInitialGuess<'_> {
 
     fn is_one_of_many(&self, omega: f64) -> bool {
         self.last.borrow().as_ref().is_some_and(|last| last.omega == omega && last.many)
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::contact::BoucWen;
+    use crate::model::Contact;
+    use crate::structure::{HarmonicLoad, Structure};
+    use faer::mat;
+
+    /// A motion that settles is followed no further than its work allows, and is on the account.
+    #[test]
+    fn motions_that_settle_are_paid_for() {
+        let one = mat![[1.0]];
+        let structure = Structure::new(one.as_ref(), mat![[0.02]].as_ref(), one.as_ref());
+        let law = Box::new(BoucWen::new(1.0, 0.3, 1.0, 0.5).unwrap());
+        let contacts = vec![Contact { law, rows: mat![[1.0]] }];
+        let loads = vec![HarmonicLoad { harmonic: 1, amplitude: vec![c64::new(1.0, 0.0)] }];
+        let model = Model::new(structure.unwrap(), contacts, loads).unwrap();
+        let orbits = OrbitInitialGuess::new(&model, Residual::Centred, &[], &|_| true);
+        orbits.allow(0.0);
+        assert!(orbits.settled(0.1, 5).is_some());
+        let taken = orbits.work();
+        assert!(taken > 0.0 && taken <= PER_OPERATION * LEAST);
+        // The same motion is not followed again.
+        assert!(orbits.settled(0.1, 9).is_some());
+        assert_eq!(orbits.work(), taken);
+        assert!(orbits.settled(1e-5, 5).is_none());
+        assert_eq!(orbits.work(), taken);
     }
 }

@@ -7,13 +7,16 @@ use crate::progress::Progress;
 use faer::c64;
 use std::f64::consts::TAU;
 
-/// Most periods that are followed, and change over the last one of a motion that has settled.
+/// Fewest and most periods that are followed, and change over the last one of a motion that has settled.
+const FEWEST_PERIODS: usize = 4;
 const PERIODS: usize = 300;
 const SETTLED: f64 = 1e-3;
 /// Steps of Runge and Kutta in the time in which the fastest mode turns by one radian, and fewest steps per
 /// period.
 const STEPS: f64 = 2.0;
 const FEWEST: usize = 128;
+/// Operations in the time of a return map.
+const PER_MAP: f64 = 150.0;
 /// Samples of the last period.
 const SAMPLES: usize = 256;
 
@@ -25,38 +28,43 @@ pub(super) struct Settled {
 }
 
 impl Settled {
-    /// The motion at a frequency [rad/s]; nothing if it does not settle, or would take more than so many
-    /// `operations`.
+    /// The motion at a frequency [rad/s], and the operations that it has taken; nothing if it does not settle within
+    /// so many `operations`.
     pub(super) fn of(
         model: &Model,
         omega: f64,
         operations: f64,
         progress: &Progress<'_>,
-    ) -> Option<Self> {
+    ) -> (Option<Self>, f64) {
         if model.is_travelling_wave() {
-            return None;
+            return (None, 0.0);
         }
-        let system = ModalSystem::marched(model).ok()?;
+        let Ok(system) = ModalSystem::marched(model) else { return (None, 0.0) };
         let steps = ((STEPS * TAU * system.rate(omega) / omega).ceil() as usize).max(FEWEST);
         let contacts = system.points();
-        let stage = (2 * system.modes() * (contacts + 1)) as f64;
-        if 4.0 * stage * steps as f64 * PERIODS as f64 > operations {
-            return None;
+        let stage = (2 * system.modes() * (contacts + 1)) as f64 + PER_MAP * contacts as f64;
+        let of_step = 4.0 * stage;
+        let periods = PERIODS.min((operations / (of_step * steps as f64)) as usize);
+        if periods < FEWEST_PERIODS {
+            return (None, 0.0);
         }
         let settings = TransientSettings {
             omega,
             scheme: Scheme::RungeKutta(steps),
-            periods: PERIODS,
+            periods,
             tolerance: Some(SETTLED),
             samples: SAMPLES,
             keep: Some(1),
         };
-        let history = transient(model, &settings, None, &[], progress).ok()?;
+        let Ok(history) = transient(model, &settings, None, &[], progress) else {
+            return (None, 0.0);
+        };
+        let taken = of_step * history.steps as f64;
         let mut displacement = history.trace.contact_displacement;
         // The end of the period is its beginning.
         displacement.truncate(SAMPLES * contacts);
         let whole = displacement.len() == SAMPLES * contacts;
-        (history.settled && whole).then_some(Self { displacement, contacts })
+        ((history.settled && whole).then_some(Self { displacement, contacts }), taken)
     }
 
     /// Amplitudes U_k of the contact displacements, k = 0..=highest, contact after contact.
