@@ -8,7 +8,7 @@ use super::forced::ForcedBalance;
 use super::neighbour::Neighbour;
 use super::settings::{Evaluation, HarmonicChoice, Resolution, SampleChoice, Settings};
 use super::solution::{Point, PointStatus};
-use crate::contact::{BoucWen, ContactLaw, Jenkins};
+use crate::contact::{BoucWen, Closure, ContactLaw, Coulomb, Jenkins};
 use crate::fourier::Harmonics;
 use crate::model::{Contact, Model};
 use crate::structure::{HarmonicLoad, Structure};
@@ -35,6 +35,24 @@ fn an_extended_balance_reaches_as_far_as_the_solution_allows() {
     assert!(least.highest == 3 && !least.has_two());
     assert!(some.has_two() && some.account.of(true) <= effort.earned(1));
     assert!(3 < some.highest && some.highest < whole.highest, "{}", some.highest);
+}
+
+/// Their laws and tangents take more than is reckoned.
+#[test]
+fn estimates_of_faces_are_allowed_less_than_those_of_sliders() {
+    let face = Coulomb::new(1, 0.4, 80.0, Some(60.0), Closure::Preload(1.0)).unwrap();
+    let structure = Structure::new(
+        mat![[2.0, 0.1], [0.1, 1.0]].as_ref(),
+        mat![[0.5, -0.1], [-0.1, 0.4]].as_ref(),
+        mat![[300.0, -100.0], [-100.0, 15000.0]].as_ref(),
+    )
+    .unwrap();
+    let contact = Contact { law: Box::new(face), rows: Mat::identity(2, 2) };
+    let faces = Model::new(structure, vec![contact], Vec::new()).unwrap();
+    let sliders = model();
+    let [of_faces, of_sliders] =
+        [&faces, &sliders].map(|model| Effort::new(model, false, 2, 2).allowed([1, 9]));
+    assert!(of_faces < 0.7 * of_sliders, "{of_faces} {of_sliders}");
 }
 
 #[test]
