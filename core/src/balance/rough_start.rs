@@ -26,6 +26,10 @@ const ROUGH: NewtonSettings = NewtonSettings { tolerance: 1e-3, max_iterations: 
 const NEAR: f64 = 1e-2;
 /// Solutions of fewer harmonics from which a point is tried: where two do not lead up to it, the others hardly do.
 const MOST_TRIES: usize = 2;
+/// Frequencies aside from which a point is tried, relative to its own: far from it contacts stick, …
+const ASIDE: [f64; 6] = [0.02, -0.02, 0.08, -0.08, 0.3, -0.3];
+/// … and the longest and the shortest step back.
+const STEPS: [f64; 2] = [1e-2, 1e-4];
 
 impl ForcedBalance<'_> {
     /// Fewer harmonics, where they cost a small part only and leave out no load.
@@ -126,6 +130,39 @@ impl ForcedBalance<'_> {
         self.add_profile(&equations.profile);
         let harmonics = table.harmonics().clone();
         Ok(found.then_some(Unknowns { harmonics, values: x }))
+    }
+}
+
+impl ForcedBalance<'_> {
+    /// A point that Newton's method does not reach from the stuck response: from a frequency aside, which it
+    /// does reach from there, and step by step back.
+    pub(super) fn solve_from_aside(
+        &mut self,
+        at: Resolution,
+        omega: f64,
+    ) -> Result<Option<Point>, Error> {
+        for share in ASIDE {
+            let mut here = (1.0 + share) * omega;
+            let mut step = share.clamp(-STEPS[0], STEPS[0]) * omega;
+            let mut start = self.found_by_newton(at, here, None)?;
+            while let Some(known) = start.as_ref().filter(|_| here != omega) {
+                if step.abs() < STEPS[1] * omega || self.is_spent() || self.is_ended() {
+                    start = None;
+                    break;
+                }
+                let next = if (here - omega).abs() <= step.abs() { omega } else { here - step };
+                if let Some(found) = self.found_by_newton(at, next, Some(known))? {
+                    (here, start) = (next, Some(found));
+                } else {
+                    step *= 0.5;
+                }
+            }
+            if start.is_some() {
+                let point = self.attempt(at, omega, start.as_ref())?;
+                return Ok(Some(point).filter(Point::is_solved));
+            }
+        }
+        Ok(None)
     }
 }
 
