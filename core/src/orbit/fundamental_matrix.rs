@@ -46,13 +46,42 @@ pub(super) struct FundamentalMatrix<'a> {
     jacobians: Vec<ReturnMapJacobian>,
 }
 
+impl Linearised {
+    /// States of the laws at an angle, from turn to turn: as many steps as the search took.
+    pub(super) fn states_at(
+        &self,
+        start: f64,
+        u: &Displacements<'_>,
+        paths: &[PartPath],
+    ) -> Vec<Vec<f64>> {
+        let mut jacobian = ReturnMapJacobian::default();
+        let of_part = |(part, path): (&Part, &PartPath)| {
+            let mut state = path.start.clone();
+            let mut stops: Vec<f64> =
+                path.events.iter().copied().filter(|theta| *theta < start).collect();
+            stops.push(start);
+            let mut from = 0.0;
+            for to in stops {
+                let count = ((to - from) / TAU * SEARCH as f64).ceil().max(1.0) as usize;
+                for n in 0..count {
+                    let at = |n: usize| from + (to - from) * n as f64 / count as f64;
+                    step(part, u, [at(n), at(n + 1)], &mut state, &mut jacobian);
+                }
+                from = to;
+            }
+            state
+        };
+        self.parts.iter().zip(paths).map(of_part).collect()
+    }
+}
+
 impl<'a> FundamentalMatrix<'a> {
     pub(super) fn new(
         map: &'a Linearised,
         omega: f64,
         u: &'a Displacements<'a>,
         paths: &'a [PartPath],
-        start: f64,
+        states: Vec<Vec<f64>>,
     ) -> Self {
         let modes = map.omega_squared.len();
         let size = 2 * modes + map.states;
@@ -73,26 +102,11 @@ impl<'a> FundamentalMatrix<'a> {
             before: vec![0.0; size * points.len()],
             contacts: vec![0.0; size * points.len()],
             loads: vec![0.0; size * points.len()],
-            states: paths.iter().map(|path| path.start.clone()).collect(),
+            states,
             jacobians: vec![ReturnMapJacobian::default(); map.parts.len()],
         };
         for (j, scale) in run.scales(omega).into_iter().enumerate() {
             run.rows[j * size + j] = scale;
-        }
-        // The states at the start of the run, from turn to turn: as many steps as the search took.
-        for ((part, path), state) in map.parts.iter().zip(paths).zip(&mut run.states) {
-            let mut stops: Vec<f64> =
-                path.events.iter().copied().filter(|theta| *theta < start).collect();
-            stops.push(start);
-            let mut from = 0.0;
-            for to in stops {
-                let count = ((to - from) / TAU * SEARCH as f64).ceil().max(1.0) as usize;
-                for n in 0..count {
-                    let at = |n: usize| from + (to - from) * n as f64 / count as f64;
-                    step(part, u, at(n), at(n + 1), state);
-                }
-                from = to;
-            }
         }
         run.gather();
         run
@@ -112,12 +126,9 @@ impl<'a> FundamentalMatrix<'a> {
 
     /// Disturbances of the contact displacements.
     fn gather(&mut self) {
-        let (size, points) = (self.size, self.shapes.ncols());
-        let modes = self.map.omega_squared.len();
-        let displacements =
-            MatRef::from_column_major_slice(&self.rows[..modes * size], size, modes);
-        let contacts = MatMut::from_column_major_slice_mut(&mut self.contacts, size, points);
-        product(contacts, Accum::Replace, [displacements, self.shapes.as_ref()], 1.0);
+        let (size, modes) = (self.size, self.map.omega_squared.len());
+        let displacements = &self.rows[..modes * size];
+        product(&mut self.contacts, Accum::Replace, size, displacements, self.shapes.as_ref(), 1.0);
     }
 
     /// The free motion over a step.
@@ -141,9 +152,7 @@ impl<'a> FundamentalMatrix<'a> {
         let (size, modes) = (self.size, drift.modes.len());
         let velocities = &mut self.rows[modes * size..2 * modes * size];
         let before = velocities.to_vec();
-        let before = MatRef::from_column_major_slice(&before, size, modes);
-        let velocities = MatMut::from_column_major_slice_mut(velocities, size, modes);
-        product(velocities, Accum::Replace, [before, coupled.transpose()], 1.0);
+        product(velocities, Accum::Replace, size, &before, coupled.transpose(), 1.0);
     }
 
     /// Takes the laws and their disturbances from one angle to the next one, to which the motion has led.
@@ -166,7 +175,8 @@ impl<'a> FundamentalMatrix<'a> {
             if self.paths[index].linear {
                 continue;
             }
-            let jacobian = step(part, self.u, from, to, &mut self.states[index]);
+            let jacobian = &mut self.jacobians[index];
+            step(part, self.u, [from, to], &mut self.states[index], jacobian);
             let (states, count) = (part.states.len(), part.law.displacements());
             let first = (2 * modes + part.states.start) * size;
             let own = self.places[index] * size..;
@@ -185,7 +195,6 @@ impl<'a> FundamentalMatrix<'a> {
                 }
             }
             old.copy_from_slice(&fresh);
-            self.jacobians[index] = jacobian;
         }
     }
 
@@ -214,15 +223,11 @@ impl<'a> FundamentalMatrix<'a> {
             }
         }
         let (displacements, rest) = self.rows.split_at_mut(modes * size);
-        let displacements = MatRef::from_column_major_slice(displacements, size, modes);
         let velocities = &mut rest[..modes * size];
-        let mut velocities = MatMut::from_column_major_slice_mut(velocities, size, modes);
         if let Some(circulatory) = &self.map.circulatory {
-            let pair = [displacements, circulatory.transpose()];
-            product(velocities.as_mut(), Accum::Add, pair, -time);
+            product(velocities, Accum::Add, size, displacements, circulatory.transpose(), -time);
         }
-        let loads = MatRef::from_column_major_slice(&self.loads, size, self.shapes.ncols());
-        product(velocities, Accum::Add, [loads, self.shapes.transpose()], time);
+        product(velocities, Accum::Add, size, &self.loads, self.shapes.transpose(), time);
     }
 
     /// The matrix in units that do not grade it, without the states of contacts that never slip.
@@ -241,17 +246,19 @@ impl<'a> FundamentalMatrix<'a> {
 }
 
 /// A product of two matrices, times a factor, in place of `out` or on top of it: few numbers column by column.
-fn product(out: MatMut<'_, f64>, accum: Accum, [a, b]: [MatRef<'_, f64>; 2], factor: f64) {
-    if a.nrows() * a.ncols() * b.ncols() >= LARGE {
+/// Columns of `out` and `a` have `size` numbers.
+fn product(out: &mut [f64], accum: Accum, size: usize, a: &[f64], b: MatRef<'_, f64>, factor: f64) {
+    if a.len() * b.ncols() >= LARGE {
+        let out = MatMut::from_column_major_slice_mut(out, size, b.ncols());
+        let a = MatRef::from_column_major_slice(a, size, b.nrows());
         return matmul(out, accum, a, b, factor, Par::Seq);
     }
-    for (j, mut column) in out.col_iter_mut().enumerate() {
-        if matches!(accum, Accum::Replace) {
-            column.fill(0.0);
-        }
-        for (k, a) in a.col_iter().enumerate() {
-            let weight = factor * b[(k, j)];
-            column.as_mut().iter_mut().zip(a.iter()).for_each(|(out, a)| *out += weight * a);
+    if matches!(accum, Accum::Replace) {
+        out.fill(0.0);
+    }
+    for (j, column) in out.chunks_exact_mut(size).enumerate() {
+        for (k, a) in a.chunks_exact(size).enumerate() {
+            add(column, factor * b[(k, j)], a);
         }
     }
 }

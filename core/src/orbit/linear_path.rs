@@ -111,8 +111,8 @@ impl PartPath {
         let mut spring = Spring::new(part);
         for (n, &theta) in angles.iter().enumerate() {
             if n > 0 {
-                let (jacobian, force) =
-                    step_with_force(part, u, [angles[n - 1], theta], &mut state);
+                let mut jacobian = ReturnMapJacobian::default();
+                let force = step(part, u, [angles[n - 1], theta], &mut state, &mut jacobian);
                 linear &= is_linear(part, &jacobian);
                 spring.follow(&u.at(part, theta), &force);
             }
@@ -132,29 +132,18 @@ impl PartPath {
     }
 }
 
-/// Takes the state of a part from one angle to another.
+/// Takes the state of a part from one angle to another, and tells the force there.
 pub(super) fn step(
-    part: &Part,
-    u: &Displacements<'_>,
-    from: f64,
-    to: f64,
-    state: &mut [f64],
-) -> ReturnMapJacobian {
-    step_with_force(part, u, [from, to], state).0
-}
-
-/// The same, with the force at its end.
-fn step_with_force(
     part: &Part,
     u: &Displacements<'_>,
     angles: [f64; 2],
     state: &mut [f64],
-) -> (ReturnMapJacobian, Vec<f64>) {
-    let mut jacobian = ReturnMapJacobian::default();
+    jacobian: &mut ReturnMapJacobian,
+) -> Vec<f64> {
     let [before, after] = angles.map(|theta| u.at(part, theta));
     let mut force = vec![0.0; after.len()];
-    part.law.return_map(&before, &after, state, &mut force, Some(&mut jacobian));
-    (jacobian, force)
+    part.law.return_map(&before, &after, state, &mut force, Some(jacobian));
+    force
 }
 
 /// The comparison of a law with the spring of its stiffness over a period: component by component the
@@ -252,7 +241,8 @@ impl Search<'_> {
     /// Derivatives of a short step, as numbers of one kind: forces by displacements.
     fn tangent(&self, theta: f64, state: &[f64]) -> Vec<f64> {
         let mut state = state.to_vec();
-        let jacobian = step(self.part, self.u, theta, theta + SHORT, &mut state);
+        let mut jacobian = ReturnMapJacobian::default();
+        step(self.part, self.u, [theta, theta + SHORT], &mut state, &mut jacobian);
         let (states, count) = (state.len(), self.part.law.displacements());
         let mut out = jacobian.force_by_after.clone();
         for i in 0..count {
@@ -277,7 +267,7 @@ impl Search<'_> {
         }
         let middle = a.0 + 0.5 * length;
         let mut state = a.1.clone();
-        step(self.part, self.u, a.0, middle, &mut state);
+        step(self.part, self.u, [a.0, middle], &mut state, &mut ReturnMapJacobian::default());
         let tangent = self.tangent(middle, &state);
         let middle = (middle, state, tangent);
         for (from, to) in [(a, &middle), (&middle, b)] {

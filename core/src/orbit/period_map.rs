@@ -180,6 +180,7 @@ impl PeriodMap {
             .windows(2)
             .map(|pair| ((pair[1] - pair[0]) / TAU * least as f64).ceil().max(1.0) as usize)
             .collect();
+        let states = self.linearised.states_at(ends[0], &u, &paths);
         let mut table: Vec<Mat<f64>> = Vec::new();
         let mut last: Option<f64> = None;
         for level in 0.. {
@@ -188,7 +189,7 @@ impl PeriodMap {
                 return None;
             }
             let (mut row, columns) = (Vec::new(), table.len().min(COLUMNS));
-            row.push(self.map(omega, &u, &paths, &ends, &counts)?);
+            row.push(self.map(omega, &u, (&paths, &states), &ends, &counts)?);
             for column in 0..columns {
                 let weight = 4.0_f64.powi(column as i32 + 1);
                 let better = faer::Scale(weight / (weight - 1.0)) * &row[column]
@@ -217,16 +218,16 @@ impl PeriodMap {
         None
     }
 
-    /// The map with so many steps between neighbouring ends.
+    /// The map with so many steps between neighbouring ends, from the states of the laws at the first one.
     fn map(
         &self,
         omega: f64,
         u: &Displacements<'_>,
-        paths: &[PartPath],
+        (paths, states): (&[PartPath], &[Vec<f64>]),
         ends: &[f64],
         counts: &[usize],
     ) -> Option<Mat<f64>> {
-        let mut run = FundamentalMatrix::new(&self.linearised, omega, u, paths, ends[0]);
+        let mut run = FundamentalMatrix::new(&self.linearised, omega, u, paths, states.to_vec());
         let last = ends.len() - 1;
         let mut before = inside(ends[last - 1], ends[last], ends[last]) - TAU;
         for (pair, &count) in ends.windows(2).zip(counts) {
