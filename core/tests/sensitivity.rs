@@ -39,7 +39,10 @@ fn changed(system: &System, cause: Cause, factor: f64) -> System {
     let mut changed = system.clone();
     match cause {
         Cause::Frequency => {}
-        Cause::Load => changed.forces.iter_mut().for_each(|force| force.2 *= factor),
+        Cause::Load => {
+            let varying = changed.forces.iter_mut().filter(|force| force.1 > 0);
+            varying.for_each(|force| force.2 *= factor);
+        }
         Cause::Law { contact, parameter: 0 } => changed.dampers[contact].2 *= factor,
         Cause::Law { contact, .. } => changed.dampers[contact].3 *= factor,
     }
