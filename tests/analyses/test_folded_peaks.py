@@ -81,3 +81,13 @@ def test_orbits_of_other_motions_certify_nothing(behind_a_gap):
     assert np.isnan(seen.waveform_error[1:3]).all()
     assert np.nanmax(np.abs(seen.relative)) < 1e-3
     assert seen.worst.position in (0, curve.omega.size - 1)
+
+
+def test_the_point_beside_a_peak_is_on_its_branch() -> None:
+    mass = ss.Structure([[1.0]], [[1e4]], damping=ss.ModalDamping(0.01), dofs=["tip"])
+    model = ss.Model(mass, [ss.Cubic("tip", stiffness=2e7)], [ss.Force("tip", 17.0)])
+    frf = ss.forced_response(model, (70.0, 200.0), harmonics=3)
+    place = frf.peak_index("tip")
+    assert place == np.nanargmax(frf.amplitude("tip"))
+    assert frf.index(frf.peak("tip").omega) != place
+    assert frf.summary()[0].error_estimate == frf.error_estimate("tip")[place]

@@ -213,3 +213,33 @@ def test_methods_make_figures(exact, run, tmp_path):
         target = tmp_path / f"{position}.png"
         drawn.figure.savefig(target)
         assert target.stat().st_size > 5_000
+
+
+def test_gaps_of_both_signs_are_drawn_on_a_linear_axis():
+    blade = ss.Structure(
+        np.eye(2), [[2e4, -1e4], [-1e4, 1e4]], damping=ss.ModalDamping(0.01), dofs=["a", "b"]
+    )
+    pad = ss.Coulomb(
+        ["a", "b"], normal=[0.0, 1.0], friction=0.3, tangential_stiffness=1e4, normal_stiffness=1e4
+    )
+    model = ss.Model(blade, [pad], [ss.Force("b", 1.0)])
+    gaps = [-3e-3, -1e-4, 1e-4, 1e-3]
+    curve = ss.damper_curve(model, dof="b", gap=gaps, omega=(40.0, 200.0), harmonics=3)
+    ax = curve.plot(limits=False)
+    assert ax.get_xscale() == "linear"
+    assert ax.get_lines()[0].get_xdata().size == 4
+    assert f"at {1e3 * gaps[np.argmin(curve.amplitude)]:g} mm" in legend(ax)[-1]
+
+
+def test_maps_are_drawn_in_the_order_of_their_values():
+    def mass(k, f):
+        blade = ss.Structure([[1.0]], [[1e4]], damping=ss.ModalDamping(0.01), dofs=["a"])
+        return ss.Model(blade, [ss.Jenkins("a", stiffness=k, slip_force=f)], [ss.Force("a", 1.0)])
+
+    def shades(stiffnesses, forces):
+        values = {"k": stiffnesses, "f": forces}
+        found = ss.design_map(mass, values, dof="a", omega=(80.0, 160.0))
+        return found.plot().collections[0].get_array()
+
+    given = shades([2e4, 5e3, 1e4], [2.0, 0.5])
+    np.testing.assert_array_equal(given, shades([5e3, 1e4, 2e4], [0.5, 2.0]))

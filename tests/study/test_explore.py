@@ -377,3 +377,25 @@ def test_nothing_of_it_is_loaded_with_the_library():
         "assert not {'tornado', 'tomlkit', 'plotly', 'stickslip.explore'} & sys.modules.keys()"
     )
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_an_exported_study_finds_the_matrices_of_a_speed(tmp_path):
+    for name, value in (("M", 1.0), ("K", 4e4), ("K2", 2.0)):
+        np.save(tmp_path / f"{name}.npy", np.array([[value]]))
+    own = """
+        [structure]
+        mass = "M.npy"
+        stiffness = "K.npy"
+        stiffening = "K2.npy"
+        speed = "3000 rpm"
+        dofs = ["tip"]
+        [[force]]
+        dof = "tip"
+        amplitude = 1.0
+        [analysis]
+        omega = { from = 100, to = 900, points = 20 }
+    """
+    (tmp_path / "study.toml").write_text(own)
+    drafted = Draft(tmp_path / "study.toml")
+    exported = drafted.exported([knob.value for knob in drafted.knobs])
+    assert str(tmp_path / "K2.npy") in exported

@@ -328,3 +328,21 @@ def test_a_report_counts_the_points_of_all_results(swept):
     from stickslip.html.sections import _status
 
     assert _status(swept) == f"{3 * GRID.size} converged"
+
+
+def test_a_sweep_of_the_speed_that_changes_nothing_is_refused():
+    text = """
+        [structure]
+        mass = [[1.0]]
+        stiffness = [[4e4]]
+        dofs = ["x"]
+        [[force]]
+        dof = "x"
+        amplitude = "20 N"
+        [analysis]
+        omega = [190.0]
+        [sweep]
+        speed = ["1000 rpm", "2000 rpm"]
+    """
+    with pytest.raises(ss.ModelError, match="speed: nothing in the study changes with the speed"):
+        Study.parse(text)

@@ -11,6 +11,7 @@ import numpy as np
 from stickslip.analyses.texts import told
 from stickslip.checks import listed
 from stickslip.damper.damper import LEFT, RIGHT
+from stickslip.disk.bladed_disk import BladedDisk
 from stickslip.disk.mistuned import MistunedDisk
 from stickslip.model import Contact, Coulomb, Model
 from stickslip.model.damping import ModalDamping
@@ -26,6 +27,10 @@ _FLAT = 0.01, 0.5 * np.pi
 """Degrees between these are taken for radians: so flat a damper is none of friction."""
 _PERCENTS = 0.5
 """Deviations of blades from here on are taken for percents: those of one disk are smaller."""
+_RIGID_BODY = 1e-8
+"""Squared natural frequencies below this share of the highest are those of rigid motion."""
+_OTHER = 0.1
+"""Share by which a damping ratio may differ from that of its law."""
 RIGID = 1e5
 """Stiffness of a contact, over that of the structure at its DOFs, up to which motions are found."""
 
@@ -37,7 +42,7 @@ def doubts(model: Model) -> tuple[Diagnostic | None, ...]:
 
 def structure_doubts(model: Model) -> tuple[Diagnostic | None, ...]:
     """Say what of a structure, its contacts and forces looks like a slip of sign or unit."""
-    return *static_doubts(model), _overdamped(model), _degrees(model)
+    return *static_doubts(model), _overdamped(model), _wave_damping(model), _degrees(model)
 
 
 def static_doubts(model: Model) -> tuple[Diagnostic | None, ...]:
@@ -65,6 +70,35 @@ def _overdamped(model: Model) -> Diagnostic | None:
     if ratio < 1.0:
         return None
     return told("overdamped", ratio=ratio, _percent=0.01 * ratio)
+
+
+def _wave_damping(model: Model) -> Diagnostic | None:
+    """Say that the wave which the forces excite is damped otherwise than its law says.
+
+    The law is that of the sector by itself. Where an interface makes most of the stiffness, modes
+    of the sector are none of the disk.
+    """
+    law = model.damping_law
+    if not isinstance(model, BladedDisk) or model.interface is None or law is None:
+        return None
+    harmonic = min((force.harmonic for force in model.forces if force.harmonic), default=1)
+    mass, damping, stiffness = model.matrices_at(harmonic)
+    from scipy.linalg import eigh
+
+    try:
+        squared, shapes = eigh(stiffness, mass)
+    except np.linalg.LinAlgError:  # a degree of freedom without mass
+        return None
+    mode = int(np.argmax(squared > _RIGID_BODY * squared[-1]))
+    omega, shape = float(np.sqrt(squared[mode])), shapes[:, mode]
+    ratio = float((shape.conj() @ damping @ shape).real) / (2.0 * omega)
+    if isinstance(law, ModalDamping):
+        meant = law.ratio[mode] if isinstance(law.ratio, tuple) else law.ratio
+    else:
+        meant = 0.5 * (law.mass / omega + law.stiffness * omega)
+    if abs(ratio - meant) <= _OTHER * abs(meant):
+        return None
+    return told("wave-damping", law=meant, ratio=ratio, diameter=model.diameter(harmonic))
 
 
 def mistuning_unit(deviation: float, what: str) -> Diagnostic | None:

@@ -116,6 +116,9 @@ TEXTS = {
     "'{phase:g} deg'.",
     "overdamped": "Damping ratio {ratio:g} is {ratio:.0%} of critical: such a mode does not "
     "oscillate; for {ratio:g} % give {_percent:g}.",
+    "wave-damping": "The damping law means a ratio of {law:.3g}, but the lowest mode of nodal "
+    "diameter {diameter} has {ratio:.3g}: the law is that of the sector by itself, without the "
+    "interface. Give damping matrices of both, or Rayleigh damping of both.",
     "mistuning-unit": "{_what} deviates by {deviation:g}, which is {deviation:.0%}; for "
     "{deviation:g} % give {_percent:g}.",
     "friction-unit": "The coefficient of friction of {contact!r} is {friction:g}; for "

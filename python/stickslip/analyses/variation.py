@@ -9,6 +9,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from stickslip.checks import as_list, brief, listed, unknown
+from stickslip.disk.mistuned import MistunedDisk
 from stickslip.errors import ModelError
 from stickslip.model import Model, PointRef, natural_frequencies
 from stickslip.model.configurations import every_point
@@ -132,19 +133,18 @@ def resonance_range(model: Model, variation: Variation, mode: int, values: Float
 
     From 5 % below the free natural frequency, or a twentieth of the stuck one if the free structure
     moves as a rigid body, to 5 % above the highest stuck one [rad/s]; both over the lowest harmonic
-    of the forces. `values` of a stiffness move the stuck frequency.
+    of the forces, at the nodal diameter at which it meets a tuned disk. Of a mistuned disk a mode
+    is that of every blade. `values` of a stiffness move the stuck frequency.
     """
-    count = len(model.structure)
-    if mode >= count:
-        raise ModelError(f"mode: {mode}; the structure has {count}, counted from 0")
     members = [model]
     if variation.parameter.endswith("stiffness"):
         members = [variation.apply(model, value) for value in (min(values), max(values))]
-    stuck = max(float(natural_frequencies(one)[mode]) for one in members)
-    free = float(natural_frequencies(model, every_point(model))[mode])
     harmonic = min((force.harmonic for force in model.forces if force.harmonic), default=1)
-    low = max((1.0 - MARGIN) * min(free, stuck), MARGIN * stuck) / harmonic
-    high = (1.0 + MARGIN) * max(free, stuck) / harmonic
+    stuck = [_of_mode(one, mode, harmonic) for one in members]
+    free = _of_mode(model, mode, harmonic, every_point(model))
+    every = np.concatenate([*stuck, free])
+    low = max((1.0 - MARGIN) * every.min(), MARGIN * np.max(stuck)) / harmonic
+    high = (1.0 + MARGIN) * every.max() / harmonic
     if not 0.0 < low < high:
         reason = (
             f"omega: mode {mode} is a motion without stiffness even with all contacts stuck; give"
@@ -153,6 +153,15 @@ def resonance_range(model: Model, variation: Variation, mode: int, values: Float
             f"{reason} omega=(from, to)", study=f"{reason} omega = {{from = ..., to = ...}}"
         )
     return low, high
+
+
+def _of_mode(model: Model, mode: int, harmonic: int, slipping: Iterable[PointRef] = ()) -> Float:
+    """Return the natural frequency of a mode [rad/s]; of a mistuned disk those of all blades."""
+    found = natural_frequencies(model, slipping, nodal_diameter=model.diameter(harmonic))
+    blades = len(model.blades) if isinstance(model, MistunedDisk) else 1
+    if (mode + 1) * blades > found.size:
+        raise ModelError(f"mode: {mode}; the structure has {found.size // blades}, counted from 0")
+    return found[mode * blades : (mode + 1) * blades]
 
 
 def local_stiffness(model: Model, contacts: Iterable[Chosen]) -> float:

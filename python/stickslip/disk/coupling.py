@@ -21,7 +21,7 @@ from stickslip.checks import (
 )
 from stickslip.errors import ModelError
 from stickslip.model.coupling import Coupling
-from stickslip.model.damping import Rayleigh, makes_blocks
+from stickslip.model.damping import ModalDamping, Rayleigh, makes_blocks
 from stickslip.model.matrix_units import MatrixUnits, Units
 from stickslip.model.structure import Structure
 
@@ -207,6 +207,11 @@ def cyclic_sector(structure: Structure, boundary: Mapping[str, str]) -> tuple[St
         name: own.T @ matrix @ own + following.T @ matrix @ following
         for name, matrix in matrices.items()
     }
+    if isinstance(structure.damping_law, ModalDamping):
+        reason = (
+            "structure: modal damping of a sector that is cut free is not that of the disk; give"
+        )
+        raise ModelError(f"{reason} ss.Rayleigh(...) or a matrix", study=f"{reason} rayleigh = ...")
     # The blocks of a skew part change sign across the cut, which one block per cut cannot say.
     if np.abs(structure.damping - structure.damping.T).max() > 0.0:
         reason = "structure: its damping is not symmetric; give the blocks yourself,"

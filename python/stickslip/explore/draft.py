@@ -145,7 +145,7 @@ KINDS = ("forced-response", "certify", "exact", "single-harmonic")
 _MATRICES: tuple[Place, ...] = tuple(
     (*table, key)
     for table in (("structure",), ("disk", "interface"))
-    for key in ("mass", "damping", "stiffness")
+    for key in ("mass", "damping", "stiffness", "stiffening", "softening")
 )
 
 

@@ -209,6 +209,10 @@ class Model:
         structure = self.structure
         return structure.mass, structure.damping, structure.stiffness
 
+    def diameter(self, harmonic: int) -> int | None:
+        """Return the nodal diameter at which a harmonic meets a tuned disk; None of others."""
+        return None
+
     def frequencies(
         self, points: list[tuple[int, int]], nodal_diameter: int | None
     ) -> NDArray[np.float64]:

@@ -71,7 +71,8 @@ def damper(
             ax.axhline(height, color=colour, lw=1.0, ls=":", label="rigid contact", zorder=1.5)
     if options["limits"]:
         _draw_limits(ax, curves[0], views[0])
-    ax.set(xscale="log", yscale="log", xlabel=views[0].label)
+    scale = "linear" if any(map(_is_linear, curves)) else "log"
+    ax.set(xscale=scale, yscale="log", xlabel=views[0].label)
     ax.set_ylabel(f"peak amplitude [{views[0].unit}]")
     if beside is not None:
         beside.set_ylabel(f"peak {omega.label} (dashed)")
@@ -93,12 +94,19 @@ class _View(NamedTuple):
     unit: str
 
 
+def _is_linear(curve: DamperCurve) -> bool:
+    """Whether values, as gaps, may be negative, or none is above zero."""
+    values = curve.values[curve.arrays.solved]
+    return bool((values < 0.0).any() or not (values > 0.0).any())
+
+
 def _view(curve: DamperCurve, length: Scale, *, per_force: bool) -> _View:
     values = curve.values
-    # A logarithmic axis has no place for zero and infinity.
-    drawn: Int = np.flatnonzero(curve.arrays.solved & np.isfinite(values) & (values > 0.0))
+    # An axis has no place for infinity, a logarithmic one none for zero.
+    finite = curve.arrays.solved & np.isfinite(values)
+    drawn: Int = np.flatnonzero(finite if _is_linear(curve) else finite & (values > 0.0))
     if not drawn.size:
-        raise ModelError("results: a curve has no peak at a finite value above 0 to draw")
+        raise ModelError("results: a curve has no peak at a finite value to draw")
     shown: Int = drawn[np.argsort(values[drawn], kind="stable")]
     x, level = values[shown], force_level(curve.model)
     stretch = x if curve.parameter == "level" else np.ones(x.size)
@@ -146,10 +154,10 @@ def design_map(ax: Axes, /, result: DesignMap, **options: Unpack[Frame]) -> None
     if 1 in result.amplitude.shape:
         _curve(ax, result, scale.factor, label)
         return
-    first, second = result.values
-    shade = ax.pcolormesh(
-        first, second, scale.factor * result.amplitude.T, shading="nearest", cmap="viridis"
-    )
+    first, second = (np.argsort(values) for values in result.values)
+    heights = scale.factor * result.amplitude[np.ix_(first, second)].T
+    x, y = result.values[0][first], result.values[1][second]
+    shade = ax.pcolormesh(x, y, heights, shading="nearest", cmap="viridis")
     ax.figure.colorbar(shade, ax=ax, label=label)
     if np.isfinite(result.amplitude).any():
         best = result.optimum

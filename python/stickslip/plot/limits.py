@@ -63,15 +63,15 @@ def limit_curve(
     ModelError
         If the measure is "max" and a static load pushes the limit structure away.
     """
-    linear, natural = _linear(model, stuck=stuck, static=measure == "max")
+    linear, resonances = _linear(model, stuck=stuck, static=measure == "max")
     harmonics = max((force.harmonic for force in linear.forces), default=1) or 1
-    omega = _frequencies(linear, natural, span)
+    omega = _frequencies(resonances, span)
     result = forced_response(linear, omega, harmonics, observe=[dof], max_harmonics=harmonics)
     return result.omega, result.amplitude(dof, measure)
 
 
 def _linear(model: Model, *, stuck: bool, static: bool) -> tuple[Model, Float]:
-    """Return the limit with its natural frequencies; its modes are computed once per model."""
+    """Return the limit with its resonances [rad/s]; its modes are computed once per model."""
     known = _KNOWN.setdefault(model, {})
     if (stuck, static) not in known:
         linear = limit_model(model, stuck=stuck)
@@ -79,14 +79,18 @@ def _linear(model: Model, *, stuck: bool, static: bool) -> tuple[Model, Float]:
             # They move the mean only, and a free structure may have no equilibrium under them.
             dynamic = [force for force in linear.forces if force.harmonic]
             linear = linear.replaced(forces=dynamic)
-        known[stuck, static] = linear, natural_frequencies(linear)
+        forced = sorted({force.harmonic for force in linear.forces if force.harmonic}) or [1]
+        known[stuck, static] = (
+            linear,
+            np.concatenate(
+                [natural_frequencies(linear, nodal_diameter=linear.diameter(k)) / k for k in forced]
+            ),
+        )
     return known[stuck, static]
 
 
-def _frequencies(linear: Model, natural: Float, span: tuple[float, float]) -> Float:
+def _frequencies(resonances: Float, span: tuple[float, float]) -> Float:
     low, high = span
-    forced = sorted({force.harmonic for force in linear.forces if force.harmonic})
-    resonances = np.concatenate([natural / harmonic for harmonic in forced] or [natural])
     resonances = resonances[(resonances > low) & (resonances < high)]
     near = np.concatenate([1.0 - _NEAR, 1.0 + _NEAR])
     omega = np.union1d(np.linspace(low, high, _POINTS), np.outer(resonances, near).ravel())

@@ -14,8 +14,9 @@ from stickslip.plot import style
 from stickslip.plot.figure import figure
 from stickslip.plot.options import DistributionOptions, TrendOptions
 from stickslip.plot.style import Colour, Looks
-from stickslip.results.fields import Float
+from stickslip.results.fields import Float, Int
 from stickslip.results.mistuning import MistuningStudy
+from stickslip.results.status import Status
 from stickslip.results.weibull import FEWEST, empirical_percentile
 
 _TICKS = (0.1, 1, 10, 25, 50, 75, 90, 95, 99, 99.5, 99.9, 99.99)
@@ -91,10 +92,13 @@ def amplification(
         What stands below; every value of the other one has a line of its own.
     """
     factors = result.amplification(dof)
+    sought = result.arrays.status[..., result.dofs.index(dof)] != Status.NOT_COMPUTED.code
+    missing = (sought & ~np.isfinite(factors)).sum(axis=-1)
     below, others = result.deviation, result.coupling_stiffness
     label, named = "standard deviation of the sectors' stiffness", ", {:g} N/m"
     if against == "coupling":
-        factors, below, others = factors.swapaxes(0, 1), others, below
+        factors, missing = factors.swapaxes(0, 1), missing.T
+        below, others = others, below
         label, named = "stiffness of the couplings [N/m]", ", S = {:g}"
         if np.isnan(below).any():
             raise ModelError("against: the couplings have no common stiffness; give one to vary")
@@ -103,7 +107,8 @@ def amplification(
     for number, (other, colour) in enumerate(zip(others, style.colours(others.size), strict=True)):
         rows = [one[np.isfinite(one)] for one in factors[order, number]]
         name = "" if others.size < 2 else named.format(other)
-        _trend(ax, below[order], rows, name, colour, q, options["confidence"])
+        parts = rows, missing[order, number]
+        _trend(ax, below[order], *parts, name, colour, q, options["confidence"])
     if against == "coupling" and (below > 0.0).all() and below.size > 1:
         ax.set_xscale("log")
     ax.axhline(1.0, color=style.GREY, lw=1.0, ls=style.STUCK, label="tuned")
@@ -111,8 +116,16 @@ def amplification(
 
 
 def _trend(
-    ax: Axes, below: Float, rows: list[Float], name: str, colour: Colour, q: float, trust: float
+    ax: Axes,
+    below: Float,
+    rows: list[Float],
+    missing: Int,
+    name: str,
+    colour: Colour,
+    q: float,
+    trust: float,
 ) -> None:
+    """Draw the mean and a percentile of rows of factors, of which some are missing."""
     several = max(row.size for row in rows) > 1
     mean = [row.mean() if row.size else np.nan for row in rows]
     label = "mean" if several else "one pattern"
@@ -120,7 +133,8 @@ def _trend(
     if not several:
         return
     ends = [
-        empirical_percentile(row, q, trust) if row.size >= FEWEST else (np.nan,) * 3 for row in rows
+        empirical_percentile(row, q, trust, int(lost)) if row.size >= FEWEST else (np.nan,) * 3
+        for row, lost in zip(rows, missing, strict=True)
     ]
     value, low, high = np.array(ends, dtype=np.float64).T
     if np.isfinite(value).any():

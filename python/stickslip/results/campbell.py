@@ -92,8 +92,9 @@ class Campbell(ColumnResult):
             for mode, omega in enumerate(own[:, place].T):
                 apart = omega - order * speeds
                 for at in np.flatnonzero(apart[:-1] * apart[1:] <= 0.0):
-                    share = apart[at] / (apart[at] - apart[at + 1]) if apart[at] else 0.0
-                    speed = speeds[at] + share * (speeds[at + 1] - speeds[at])
+                    ends = at + np.argsort(apart[at : at + 2])
+                    # That at a computed speed is found from both sides, to the last digit.
+                    speed = np.interp(0.0, apart[ends], speeds[ends])
                     where = order, int(self.diameter[place]), mode
                     found.append(Crossing(*where, float(speed), order * float(speed)))
         return sorted(set(found), key=lambda one: one.speed)

@@ -98,6 +98,13 @@ class Peaks(Sweep):
         key_of(dof, measure)
         return self._peaks_of([dof], measure)[0]
 
+    def peak_index(self, dof: str) -> int:
+        """Return the position of the solved point beside a peak, on its branch if the curve folds.
+
+        Raises ModelError if no point is solved.
+        """
+        return _nearest(self, dof, self.peak(dof))
+
     def _peaks_of(self, dofs: Sequence[str], measure: Measure) -> list[Peak]:
         """Return the peaks of several degrees of freedom, found together."""
         if self.model.problem.laws_not_monotone:
@@ -300,8 +307,7 @@ def rows(result: Peaks, dofs: Iterable[str] | str) -> list[Summary]:
 
 
 def _row(result: Peaks, dof: str, peak: Peak) -> Summary:
-    solved = np.flatnonzero(result.arrays.solved)
-    near = int(solved[np.abs(result.omega[solved] - peak.omega).argmin()])
+    near = _nearest(result, dof, peak)
     return Summary(
         dof,
         peak.omega,
@@ -311,6 +317,15 @@ def _row(result: Peaks, dof: str, peak: Peak) -> Summary:
         peak.at_edge,
         peak.beside_gap,
     )
+
+
+def _nearest(result: Peaks, dof: str, peak: Peak) -> int:
+    """Return the position of the solved point next to a peak in frequency and in amplitude."""
+    amplitude = result.amplitude(dof)
+    top = peak.amplitude if np.isfinite(peak.amplitude) else np.nanmax(amplitude)
+    width = max(float(np.ptp(result.omega)), float(np.spacing(peak.omega)))
+    distance = np.hypot((result.omega - peak.omega) / width, amplitude / top - 1.0)
+    return int(np.nanargmin(distance))
 
 
 def _curve(result: Peaks, dof: str, measure: Measure) -> tuple[Float, Float, Bool]:

@@ -278,7 +278,12 @@ def _check_name(name: str) -> None:
 
 
 def _check_speed(tables: StudyTables) -> None:
-    """Refuse a sweep, of a model at one speed, for what needs that of several."""
+    """Refuse a sweep of the speed that changes nothing, and any for what needs several speeds."""
+    if tables.sweep is not None and tables.sweep.speed is not None and not depends_on_speed(tables):
+        raise ModelError(
+            "sweep: speed: nothing in the study changes with the speed of rotation; give "
+            "'stiffening' in [structure], or leave out the sweep"
+        )
     if tables.sweep is not None and tables.analysis.of_speed and depends_on_speed(tables):
         raise ModelError(
             f"sweep: a {tables.analysis.kind} makes the model anew at each speed, a sweep varies "
