@@ -183,7 +183,9 @@ impl BranchSeries {
             tail * length > most[0] * of + floor * length || tail > most[1] * of + floor
         };
         self.last = rest;
-        self.rest = series(&rest, length);
+        // Powers of rounding over a short step have no bound.
+        let counts = rest.iter().any(|own| own.abs() > floor);
+        self.rest = if counts { series(&rest, length) } else { [0.0; COUNT] };
         self.rest[0] = 0.0;
         self.slope = series(&slope, length);
         if !changed.is_finite()

@@ -156,16 +156,14 @@ impl Backbone {
         losses
     }
 
-    /// The loss by the formula that holds up to the first break at or behind `piece` breaks: beyond it
-    /// the formula goes on as far as it has a meaning.
+    /// The loss by the formula that holds behind so many breaks, where that is no straight line: it goes on as
+    /// far as it has a meaning.
     pub(super) fn loss_on(&self, piece: usize, x: f64) -> Loss {
         match self {
             Self::Iwan { chi, beta } if piece == 0 => {
                 let share = x / gross_slip(*chi, *beta);
                 power_loss(*chi, *beta, share)
             }
-            Self::Table(table) => table.on_row(piece, x),
-            Self::ShearLayer(_) if piece == 0 => Loss::default(),
             _ => self.loss(x),
         }
     }

@@ -67,15 +67,13 @@ impl LoadingCurve {
         }
     }
 
-    /// [`Self::loss`] and its slope by the formula that holds behind so many breaks.
+    /// [`Self::loss`] and its slope by the formula that holds behind so many breaks, wherever u lies.
     pub(crate) fn loss_on(&self, piece: usize, u: f64) -> [f64; 2] {
-        let (k, s) = (self.stiffness, self.slip_force);
-        if k == 0.0 || s == 0.0 || s == f64::INFINITY {
-            let loss = self.loss(u);
-            return [loss.value, loss.slope];
+        if let Some([at_rest, slope]) = self.line(piece) {
+            return [at_rest + slope * u, slope];
         }
         let own = self.backbone.loss_on(piece, self.x(u));
-        [s * own.value, k * own.slope]
+        [self.slip_force * own.value, self.stiffness * own.slope]
     }
 
     /// Value at no displacement \[N\] and slope [N/m] of the loss behind so many breaks, if it is a straight
