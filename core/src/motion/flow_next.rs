@@ -12,6 +12,8 @@ use crate::solve::size;
 const AT_LIMIT: f64 = 1e-14;
 /// The same for the next coefficients of a point that is at its limit.
 const AT_REST: f64 = 1e-9;
+/// Highest power that a margin may begin with: the square of one that loads make, which begin as sines.
+const LEADING: usize = 8;
 
 impl Flow<'_> {
     /// What a point does within `length` of τ, and whether it can begin the step as it is.
@@ -240,7 +242,7 @@ impl Flow<'_> {
         let mut from = 0;
         if a[0] <= AT_LIMIT * scale.max(sum(&a[1..])) {
             from = 1;
-            while from < 4 && a[from].abs() <= AT_REST * sum(&a[from + 1..]) {
+            while from < LEADING && a[from].abs() <= AT_REST * sum(&a[from + 1..]) {
                 from += 1;
             }
             if a[from] <= 0.0 {

@@ -40,7 +40,7 @@ pub(super) type Coefficients = [f64; POWERS];
 enum Beginning {
     /// In motion.
     Under,
-    /// Where the contact has closed: the limit is zero and grows.
+    /// Where the contact has closed: the limit is zero and does not fall.
     Closing,
     /// Where the contact is about to open.
     Opening,
@@ -53,6 +53,8 @@ pub(super) struct Slide {
     /// μ k_n and the point whose force presses, if the limit varies.
     pressing: Option<(f64, usize)>,
     beginning: Beginning,
+    /// Of a contact that has closed, the power with which it begins to move in its plane, once that is known.
+    order: usize,
     /// What the error of the traction counts against \[N\].
     size: f64,
     /// Rate at which the traction turns or vanishes [1/s].
@@ -67,6 +69,16 @@ pub(super) struct Slide {
 /// Displacement of a point, power after power.
 fn of(contact: &[f64], point: usize) -> &[f64] {
     &contact[point * POWERS..(point + 1) * POWERS]
+}
+
+/// The unit vector in a direction; of none that of the first axis.
+fn unit([x, y]: [f64; 2]) -> [f64; 2] {
+    let length = x.hypot(y);
+    if length > 0.0 {
+        [x / length, y / length]
+    } else {
+        [1.0, 0.0]
+    }
 }
 
 /// `Σ_j a_j b_(n−j)` over `j` from `first` to n.
@@ -119,15 +131,13 @@ impl Slide {
         let size = system.limit_size(a, &state.displacement) + drive / highest;
         let now = system.limit(a, &state.force);
         let beginning = match now <= VANISHED * size {
-            true if growth > 0.0 => Beginning::Closing,
+            true if pressing.is_some() && growth >= 0.0 => Beginning::Closing,
             true => Beginning::Opening,
             false => Beginning::Under,
         };
         let closing = beginning == Beginning::Closing;
         let traction = [state.force[a], state.force[b]];
-        let direction = if closing || traction == [0.0; 2] { way } else { traction };
-        let length = direction[0].hypot(direction[1]);
-        let unit = if length > 0.0 { direction.map(|t| t / length) } else { [1.0, 0.0] };
+        let unit = unit(if traction == [0.0; 2] { way } else { traction });
         let zeros = [0.0; POWERS];
         let start = |value: f64| {
             let mut series = zeros;
@@ -138,6 +148,7 @@ impl Slide {
             plane,
             pressing,
             beginning,
+            order: 0,
             size,
             rate: if beginning == Beginning::Under { SLOWER * drive / now } else { 0.0 },
             limit: start(if closing { 0.0 } else { now }),
@@ -164,17 +175,27 @@ impl Slide {
                     let turn = self.across(n, contact) - known;
                     self.turn_on(power, turn / (power as f64 * self.limit[0]));
                 }
-                // (M_1 n + k_t |u'|) φ_n, as a turn of the first order changes u'·e⊥.
-                Beginning::Closing if power > 1 => {
-                    let n = power - 1;
-                    let known = product_of_slope(&self.limit, &self.turn, n, 2);
-                    self.turn_on(n, 0.0);
-                    let turn = self.across(n, contact) - known;
-                    let [u, v] = self.plane.points.map(|point| of(contact, point)[1]);
-                    let drive = self.plane.stiffness * u.hypot(v);
-                    self.turn_on(n, turn / (n as f64 * self.limit[1] + drive));
+                Beginning::Closing if self.order == 0 => {
+                    let way = self.plane.points.map(|point| of(contact, point)[power]);
+                    if way != [0.0; 2] {
+                        self.order = power;
+                        let [cos, sin] = unit(way);
+                        (self.along[0][0], self.along[1][0]) = (cos, sin);
+                    }
                 }
-                Beginning::Closing | Beginning::Opening => {}
+                // (M_1 n + k_t |u'|) φ_n, as a turn of the first order changes u'·e⊥; of a motion that begins
+                // with a higher power m all but φ divided by τ^(m − 1).
+                Beginning::Closing => {
+                    let n = power - self.order;
+                    let known =
+                        product_of_slope(&self.limit, &self.turn, power - 1, self.order + 1);
+                    self.turn_on(n, 0.0);
+                    let turn = self.across(power - 1, contact) - known;
+                    let [u, v] = self.plane.points.map(|point| of(contact, point)[self.order]);
+                    let drive = self.order as f64 * self.plane.stiffness * u.hypot(v);
+                    self.turn_on(n, turn / (n as f64 * self.limit[self.order] + drive));
+                }
+                Beginning::Opening => {}
             }
             self.pull[power - 1] = self.pull_at(power - 1, contact);
         }
@@ -223,12 +244,16 @@ impl Slide {
     /// Length in τ over which the truncated traction is exact to rounding.
     pub(super) fn reach(&self, force: &[f64]) -> f64 {
         let mut reach = f64::INFINITY;
+        let first = if self.order > 1 { self.order } else { 0 };
+        let begun = self.plane.points.map(|point| of(force, point)[first]);
+        // From rest nothing but the traction itself is there to count against.
+        let size = if first == 0 { self.size } else { begun[0].hypot(begun[1]) };
         for point in self.plane.points {
             let force = of(force, point);
             for last in [DEGREE - 2, DEGREE - 1, DEGREE] {
-                if force[last] != 0.0 && self.beginning != Beginning::Opening {
-                    let ratio = 10.0 * TRUNCATION * self.size / force[last].abs();
-                    reach = reach.min(ratio.powf(1.0 / last as f64));
+                if force[last] != 0.0 && size > 0.0 && self.beginning != Beginning::Opening {
+                    let ratio = 10.0 * TRUNCATION * size / force[last].abs();
+                    reach = reach.min(ratio.powf(1.0 / (last - first) as f64));
                 }
             }
         }
@@ -267,8 +292,8 @@ impl<'a> Swing<'a> {
 
     /// Coefficients of the change of the traction of one power.
     pub(super) fn advance(&mut self, power: usize, contact: &[f64]) -> [f64; 2] {
-        let Slide { plane, pressing, beginning, limit, turn, along: [cos, sin], pull, .. } =
-            self.slide;
+        let Slide { plane, pressing, beginning, order, limit, turn, pull, .. } = self.slide;
+        let [cos, sin] = &self.slide.along;
         if power > 0 {
             self.limit[power] =
                 pressing.map_or(0.0, |(slope, normal)| slope * of(contact, normal)[power]);
@@ -283,14 +308,15 @@ impl<'a> Swing<'a> {
                     let driven = product(limit, &self.drive, n, 0);
                     self.across[power] = (driven - known) / (power as f64 * limit[0]);
                 }
-                Beginning::Closing => {
-                    let known = product_of_slope(limit, &self.across, power, 2)
-                        + product(pull, &self.across, power, 1);
-                    let driven = product(limit, &self.drive, power, 1);
-                    let pivot = power as f64 * limit[1] + pull[0];
+                Beginning::Closing if *order > 0 && n + order <= DEGREE => {
+                    let last = n + order;
+                    let known = product_of_slope(limit, &self.across, last, order + 1)
+                        + product(pull, &self.across, last, *order);
+                    let driven = product(limit, &self.drive, last, *order);
+                    let pivot = power as f64 * limit[*order] + pull[order - 1];
                     self.across[power] = (driven - known) / pivot;
                 }
-                Beginning::Opening => {}
+                Beginning::Closing | Beginning::Opening => {}
             }
         }
         let [across, along] = [&self.across, &self.limit];
