@@ -35,6 +35,11 @@ fn beam() -> (Model, Mat<f64>) {
     (system.model(), negative)
 }
 
+/// Number of multipliers outside the unit circle.
+fn unstable(cycle: &Cycle) -> usize {
+    cycle.multipliers[cycle.neutral..].iter().filter(|m| m.norm() > 1.0).count()
+}
+
 fn follow((model, negative): &(Model, Mat<f64>), settings: &CycleSettings) -> LimitCycles {
     let negative = NegativeDamping::Whole(negative.clone());
     limit_cycles(model, &negative, &Variation::Ratio, 1.0, settings, &|_| true).unwrap()
@@ -69,7 +74,7 @@ fn the_single_mass_has_the_exact_cycles() {
             close(cycle.range[0][1], amplitude, 1e-6);
             close(cycle.response.omega, omega, 1e-7);
             assert!((cycle.multipliers[0].norm() - multiplier).abs() < 6e-5);
-            assert_eq!(cycle.unstable(), Some(usize::from(slips)));
+            assert_eq!(unstable(cycle), usize::from(slips));
             // What negative damping feeds friction dissipates.
             close(cycle.response.contacts[0].dissipation, -cycle.viscous, 1e-9);
         }
@@ -225,7 +230,7 @@ fn the_third_mode_of_the_beam_loses_its_stability_to_a_complex_pair() {
     close(first.value, 4.686, 2e-4);
     let slipping = cycles.cycles.iter().filter(|c| c.slipping);
     assert!(slipping.clone().count() > 10);
-    assert!(slipping.into_iter().all(|c| c.unstable() > Some(0)));
+    assert!(slipping.into_iter().all(|c| unstable(c) > 0));
 }
 
 #[test]

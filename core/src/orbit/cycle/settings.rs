@@ -124,18 +124,6 @@ pub struct Cycle {
     pub closed: bool,
 }
 
-impl Cycle {
-    /// Number of multipliers outside the unit circle; nothing if they are not known.
-    #[must_use]
-    pub fn unstable(&self) -> Option<usize> {
-        let counted = self.multipliers.get(self.neutral..)?;
-        if counted.is_empty() || counted.iter().any(|m| m.re.is_nan()) {
-            return None;
-        }
-        Some(counted.iter().filter(|m| m.norm() >= 1.0).count())
-    }
-}
-
 /// A place where a branch turns.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Turn {

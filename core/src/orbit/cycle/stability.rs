@@ -24,6 +24,9 @@ const DECIDES: f64 = 3.0;
 const HALVINGS: i32 = 26;
 /// Change of the modulus of a multiplier across an interval this short that is a jump.
 const JUMP: f64 = 1e-3;
+/// Distance from the unit circle at which a multiplier lies on neither side of it: that of a mode that nothing
+/// damps is 1 to rounding.
+const ROUNDING: f64 = 1e-8;
 /// Angle off the real axis within which a multiplier counts as real.
 const REAL: f64 = 1e-6;
 
@@ -67,12 +70,21 @@ impl Floquet {
     /// Over the full period, those of contacts that never slip first.
     pub(super) fn multipliers(&self) -> Vec<c64> {
         let ones = std::iter::repeat_n(c64::new(1.0, 0.0), self.neutral);
-        let whole = |m: &c64| if self.symmetric { m * m } else { *m };
-        ones.chain(self.span.iter().map(whole)).collect()
+        ones.chain(self.whole()).collect()
     }
 
+    fn whole(&self) -> impl Iterator<Item = c64> + '_ {
+        self.span.iter().map(|m| if self.symmetric { m * m } else { *m })
+    }
+
+    /// How far a disturbance grows beyond rounding in a period, in logarithms.
+    fn growth(&self, index: usize) -> f64 {
+        self.whole().nth(index).map_or(f64::NAN, |m| m.norm().ln() - ROUNDING)
+    }
+
+    /// Number of multipliers outside the unit circle.
     fn unstable(&self) -> usize {
-        self.span.iter().filter(|m| m.norm() >= 1.0).count()
+        (0..self.span.len()).filter(|&index| self.growth(index) > 0.0).count()
     }
 }
 
@@ -172,15 +184,15 @@ fn change(
 ) -> Change {
     let (mut low, mut high) = (before.clone(), after.clone());
     let leaving = before.unstable().min(after.unstable());
-    let growth = |one: &Floquet| one.span.get(leaving).map_or(f64::NAN, |m| m.norm().ln());
-    let mut bracket = Bracket::new([growth(before), growth(after)], HALVINGS);
+    let growth = [before, after].map(|one| one.growth(leaving));
+    let mut bracket = Bracket::new(growth, HALVINGS);
     while let Some(share) = bracket.next().filter(|_| !curve.interrupted()) {
         let Some((a, b)) = curve.matched(&low.z, &high.z) else { break };
         curve.accept(&a);
         let Some(z) = across(curve, &a, &b, share) else { break };
         let Some(middle) = Floquet::of(curve, z, true) else { break };
         let stays = middle.unstable() == before.unstable();
-        bracket.narrow(share, growth(&middle), stays);
+        bracket.narrow(share, middle.growth(leaving), stays);
         if stays {
             low = middle;
         } else {
@@ -195,18 +207,19 @@ fn change(
         value,
         omega,
         after: position,
-        kind: kind(&low, &high),
+        kind: kind(&low, &high, leaving),
         unstable: (before.unstable(), after.unstable()),
     }
 }
 
-/// What happens between two orbits close to each other.
-fn kind(low: &Floquet, high: &Floquet) -> ChangeKind {
+/// What happens between two orbits close to each other, of which one has more multipliers outside than `leaving`.
+fn kind(low: &Floquet, high: &Floquet, leaving: usize) -> ChangeKind {
     let off = |m: &c64| (m.norm() - 1.0).abs();
-    let critical =
-        |orbit: &Floquet| orbit.span.iter().copied().min_by(|a, b| off(a).total_cmp(&off(b)));
-    let (Some(a), Some(b)) = (critical(low), critical(high)) else { return ChangeKind::Grazing };
-    if off(&a).max(off(&b)) > JUMP {
+    let [inner, outer] = if low.unstable() > leaving { [high, low] } else { [low, high] };
+    let (Some(a), Some(b)) = (inner.span.get(leaving), outer.span.get(leaving)) else {
+        return ChangeKind::Grazing;
+    };
+    if off(a).max(off(b)) > JUMP {
         return ChangeKind::Grazing;
     }
     let angle = b.arg().abs();
