@@ -94,6 +94,8 @@ pub struct Classifier {
     system: ModalSystem,
     slipping: Slipping,
     sticking: Sticking,
+    /// The same with contacts that are open at rest.
+    at_rest: Option<Sticking>,
     /// Whether every motion loses energy.
     passive: bool,
     /// Stuck modes in coordinates η, one per column.
@@ -136,6 +138,7 @@ impl Classifier {
             settings,
             slipping: Slipping::new(&system)?,
             passive: is_passive(model),
+            at_rest: Sticking::at_rest(&system)?,
             sticking,
             system,
             modes,
@@ -158,7 +161,8 @@ impl Classifier {
         let mut period = f64::NAN;
         let mut passed = 0;
         let reason = loop {
-            if self.sticking.keeps(&self.system, &state) {
+            let mut kept = std::iter::once(&self.sticking).chain(&self.at_rest);
+            if kept.any(|own| own.keeps(&self.system, &state)) {
                 break Reason::Stuck;
             }
             if self.slipping.outgrows(&self.system, &state) {

@@ -206,26 +206,48 @@ fn passed_on(system: &ModalSystem, held: &[bool]) -> Mat<f64> {
 /// Whether a motion stays below the onset of slip, and dies away there.
 pub(super) struct Sticking {
     phase: Phase,
-    /// `|T B Φ R|`: force of a point per modal coordinate, point after point.
+    /// `|T B Φ R|`: force of a point per modal coordinate, point after point; of one that is open what would
+    /// press it.
     force: Vec<Vec<f64>>,
+    /// Points that are open.
+    open: Vec<bool>,
     /// Whether all poles decay.
     pub(super) damped: bool,
 }
 
 impl Sticking {
+    /// With all contacts closed.
     pub(super) fn new(system: &ModalSystem) -> Result<Self, Error> {
+        Self::with(system, &vec![false; system.points()])
+    }
+
+    /// With those contacts open that are so at rest, if there are any.
+    pub(super) fn at_rest(system: &ModalSystem) -> Result<Option<Self>, Error> {
+        let state = State::rest(system);
+        let open: Vec<bool> = state.points.iter().map(|own| *own == PointState::Open).collect();
+        open.contains(&true).then(|| Self::with(system, &open)).transpose()
+    }
+
+    fn with(system: &ModalSystem, open: &[bool]) -> Result<Self, Error> {
         // A point without friction slips from the start.
-        let states: Vec<PointState> = system
-            .limits()
-            .iter()
-            .map(|limit| if *limit > 0.0 { PointState::Stuck } else { PointState::Forward })
+        let states: Vec<PointState> = (system.limits().iter().zip(open))
+            .map(|(limit, open)| match open {
+                true => PointState::Open,
+                false if *limit > 0.0 => PointState::Stuck,
+                false => PointState::Forward,
+            })
             .collect();
         let phase = Phase::new(system, &states)?;
         let (n, points) = (system.modes(), system.points());
         let per_pole = |point: usize, pole: usize| {
             let mut sum = c64::new(0.0, 0.0);
             for other in 0..points {
-                let t = phase.tangent[(point, other)];
+                let would = open[point] && other == point;
+                let t = if would {
+                    system.normal_stiffness(point)
+                } else {
+                    phase.tangent[(point, other)]
+                };
                 for (j, b) in system.contact_shape(other).iter().enumerate() {
                     sum += phase.right[(j, pole)] * (t * b);
                 }
@@ -236,7 +258,7 @@ impl Sticking {
             .map(|point| (0..2 * n).map(|pole| per_pole(point, pole)).collect())
             .collect();
         let neutral = phase.neutral();
-        Ok(Self { force, damped: phase.poles.iter().all(|p| p.re < -neutral), phase })
+        Ok(Self { force, open: open.to_vec(), damped: phase.poles.iter().all(|p| p.re < -neutral), phase })
     }
 
     /// Whether no contact slips from now on, and all motion is damped. Rest is, too.
@@ -269,9 +291,18 @@ impl Sticking {
             .collect();
         let swing =
             |i: usize| -> f64 { self.force[i].iter().zip(&z).map(|(c, z)| c * z.norm()).sum() };
+        let touches = |i: &usize| {
+            self.open[*i] && system.pressing(*i, &about) + swing(*i) > 0.0
+        };
+        if system.normals.iter().any(touches) {
+            return false;
+        }
         let lowest: Vec<f64> = (0..rest.len()).map(|i| mean[i] - swing(i)).collect();
         (0..rest.len()).all(|i| {
             let limit = system.limits()[i];
+            if self.open[i] {
+                return true;
+            }
             let closed = !system.normals.contains(&i) || lowest[i] + system.balanced(i) > 0.0;
             let limit = if limit == f64::MAX { system.limit(i, &lowest) } else { limit };
             let most = match system.plane_of(i) {
