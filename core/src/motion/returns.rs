@@ -124,7 +124,8 @@ impl Returns {
         for count in 1..=MOST {
             let fall = self.fall(count)?;
             let (last, rate) = (fall.last, fall.per_return * count as f64);
-            let left = if last > ROUNDING { last / -(-rate).exp_m1() } else { 0.0 };
+            let ends = last <= ROUNDING && rate >= 0.0;
+            let left = if ends { 0.0 } else { last / -(-rate).exp_m1() };
             if fall.most > self.tolerance || !(0.0..=self.tolerance).contains(&left) {
                 continue;
             }
