@@ -25,7 +25,8 @@ pub fn fates(
 ) -> Result<Vec<Option<Classification>>, Error> {
     let prepared = Classifier::new(model, settings)?;
     let there = std::thread::available_parallelism().map_or(1, usize::from);
-    let workers = if threads == 0 { there } else { threads }.min(starts.len().max(1));
+    let wanted = if threads == 0 { there } else { threads.min(there) };
+    let workers = wanted.min(starts.len().max(1));
     let (next, stop) = (AtomicUsize::new(0), AtomicBool::new(false));
     let done = Mutex::new(Vec::with_capacity(starts.len()));
     let count = AtomicUsize::new(0);

@@ -11,7 +11,7 @@ pub struct OrbitSettings {
     pub harmonics: usize,
     /// Force at mid-range of contacts that never slip; default [`Residual::Centred`].
     pub residual: Residual,
-    /// Newton iterations of one shooting; default 50.
+    /// Newton iterations of one shooting; default 100.
     pub max_iterations: usize,
 }
 
