@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import ArrayLike
 
-from stickslip.analyses.arguments import require_time
+from stickslip.analyses.arguments import require_lowest, require_time
 from stickslip.analyses.limit_cycles import NegativeDamping
 from stickslip.analyses.run import Progress, Run
 from stickslip.analyses.side_by_side import has_own_laws, in_turn
@@ -50,6 +50,11 @@ def stability_map(
     StabilityMap
         One entry per value.
 
+    Raises
+    ------
+    ModelError
+        If all values are refused for one reason.
+
     References
     ----------
     Guillen (1999), section 5.2.3 for the influence of the stiffness; the dissertation leaves the
@@ -63,8 +68,10 @@ def stability_map(
     variation = variation_of(model, name, settings)
     branch = settings.part(LimitSettings)
     cycles = CycleSettings.of(**branch)
+    require_lowest(model, cycles.mode)
     rows: list[tuple[float, float, float]] = []
     notes: list[Diagnostic] = []
+    refused: list[str | None] = []
     interrupted = False
 
     def limit_of(value: float, progress: Progress) -> tuple[float, float, float] | str | None:
@@ -87,6 +94,7 @@ def stability_map(
                     if found is None:
                         interrupted = True
                         break
+                    refused.append(found if isinstance(found, str) else None)
                     rows.append(found if isinstance(found, tuple) else (np.nan, np.nan, np.nan))
                     if isinstance(found, str):
                         notes.append(_without_limit(name, value, found))
@@ -95,6 +103,8 @@ def stability_map(
         except KeyboardInterrupt:
             interrupted = True
         done = len(rows)
+        if refused and refused[0] and refused.count(refused[0]) == total:
+            raise ModelError(refused[0])
         limit, omega, stable = np.array(rows, dtype=np.float64).reshape(-1, 3).T
         unknown = int((np.isfinite(limit) & ~np.isfinite(stable)).sum())
         if unknown:
