@@ -49,7 +49,7 @@ class TransientSettings(Settings):
         description='"exact": power series, exact to rounding, between the instants of stick and '
         'slip, which are located. "rk4": the classical Runge-Kutta method of fourth order with the '
         "return map of the contacts in every step; its error falls with the square of the step "
-        "where contacts slip.",
+        "where contacts slip, of a StructuralDamper with the step itself.",
     )
     tolerance: Annotated[float, Within(1e-12, 0.5), percent] | None = Field(
         default=None,
