@@ -258,7 +258,12 @@ impl Sticking {
             .map(|point| (0..2 * n).map(|pole| per_pole(point, pole)).collect())
             .collect();
         let neutral = phase.neutral();
-        Ok(Self { force, open: open.to_vec(), damped: phase.poles.iter().all(|p| p.re < -neutral), phase })
+        Ok(Self {
+            force,
+            open: open.to_vec(),
+            damped: phase.poles.iter().all(|p| p.re < -neutral),
+            phase,
+        })
     }
 
     /// Whether no contact slips from now on, and all motion is damped. Rest is, too.
@@ -291,9 +296,7 @@ impl Sticking {
             .collect();
         let swing =
             |i: usize| -> f64 { self.force[i].iter().zip(&z).map(|(c, z)| c * z.norm()).sum() };
-        let touches = |i: &usize| {
-            self.open[*i] && system.pressing(*i, &about) + swing(*i) > 0.0
-        };
+        let touches = |i: &usize| self.open[*i] && system.pressing(*i, &about) + swing(*i) > 0.0;
         if system.normals.iter().any(touches) {
             return false;
         }

@@ -17,8 +17,8 @@ from stickslip.results.fields import Bool, Complex, Int
 States = NDArray[np.str_]
 """A name of `STATES` per motion."""
 
-# As the core looks for changes of stability.
-_ROUNDING = 1e-8
+# Orbits close to this share of their size, and multipliers are known no better.
+_ROUNDING = 1e-10
 
 
 class _State(NamedTuple):
