@@ -22,6 +22,9 @@ from stickslip.settings.cycles import CycleSettings, LimitSettings, MapKeys, Map
 from stickslip.settings.settings import configured
 from stickslip.settings.variation import one_of
 
+# Ratios this close are one.
+_ROUNDING = 1e-8
+
 
 @configured(MapKeys)
 def stability_map(
@@ -150,4 +153,6 @@ def _stable_limit(arrays: CycleArrays) -> float:
     states = stability_of(arrays.multipliers, arrays.neutral, arrays.known)
     if states[sticking[0]] == "unstable":
         return 0.0
-    return limit if (states[sticking[sticking <= last]] == "stable").all() else float("nan")
+    # The cycle where the branch turns lies on neither side.
+    below = sticking[(sticking <= last) & (arrays.ratio[sticking] < limit * (1.0 - _ROUNDING))]
+    return limit if (states[below] == "stable").all() else float("nan")
