@@ -55,6 +55,8 @@ pub enum Reason {
     Contradiction = 10,
     /// Undecided: the caller has ended the run.
     Interrupted = 11,
+    /// Dies away: next to nothing is left of it about an equilibrium.
+    Faded = 12,
 }
 
 /// What becomes of one start.
@@ -168,8 +170,10 @@ impl Classifier {
             if self.slipping.outgrows(&self.system, &state) {
                 break Reason::Unbounded;
             }
+            if returns.faded() {
+                break if self.passive { Reason::Passive } else { Reason::Faded };
+            }
             if let Some(closed) = returns.closed() {
-                // Around an equilibrium away from the origin a motion that fades seems to repeat itself.
                 if self.passive {
                     break Reason::Passive;
                 }
@@ -244,13 +248,13 @@ impl Classifier {
         };
         let span = match reason {
             Reason::Closed => period,
-            Reason::Stuck | Reason::Passive => self.slow,
+            Reason::Stuck | Reason::Passive | Reason::Faded => self.slow,
             Reason::Unbounded | Reason::Overflow | Reason::Contradiction => return fate,
             _ => SURVEYED as f64 * self.slow,
         };
         if let Ok(survey) = self.survey(&mut state.clone(), span, go_on) {
             fate.amplitude = survey.range.iter().map(|[low, high]| 0.5 * (high - low)).collect();
-            if !matches!(reason, Reason::Stuck | Reason::Passive) {
+            if !matches!(reason, Reason::Stuck | Reason::Passive | Reason::Faded) {
                 let (mode, share) = survey.mode();
                 (fate.mode, fate.share) = (Some(mode), share);
             }

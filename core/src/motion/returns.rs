@@ -36,8 +36,12 @@ pub(super) struct Returns {
     tolerance: f64,
     /// Whether the coordinate rises.
     rises: bool,
-    /// Time \[s\] and coordinates of the last returns.
-    last: VecDeque<(f64, Vec<f64>)>,
+    /// Coordinates at the last minimum.
+    lowest: Vec<f64>,
+    /// Time \[s\], coordinates and size of the motion of the last returns.
+    last: VecDeque<(f64, Vec<f64>, f64)>,
+    /// Size of the motion relative to the whole state, offset included, over the last returns.
+    shares: VecDeque<f64>,
     /// Closing errors over the last periods, per number of returns in a period.
     errors: Vec<VecDeque<f64>>,
     series: Vec<f64>,
@@ -51,7 +55,9 @@ impl Returns {
             shape,
             tolerance,
             rises: false,
+            lowest: Vec::new(),
             last: VecDeque::new(),
+            shares: VecDeque::new(),
             errors: vec![VecDeque::new(); MOST],
             series: Vec::new(),
             slope: Vec::new(),
@@ -80,13 +86,18 @@ impl Returns {
             // segments on either side is rounding there.
             if (to - from) * segment.length > TURN {
                 let rises = value(&self.slope, 0.5 * (from + to)) > 0.0;
-                if self.rises && !rises {
+                if self.rises != rises {
                     let tau = from * segment.length;
                     let mut state = State::rest(system);
                     segment.series.state_at(tau, system, state.parts());
                     let time = begin + segment.start + tau / segment.series.rate();
-                    let (size, error) = self.add(time, coordinates.coordinates(&state));
-                    told(size, error);
+                    let y = coordinates.coordinates(&state);
+                    if rises {
+                        self.lowest = y;
+                    } else {
+                        let (size, error) = self.add(time, y);
+                        told(size, error);
+                    }
                 }
                 self.rises = rises;
             }
@@ -97,24 +108,44 @@ impl Returns {
 
     /// Adds a return; its size and its least closing error.
     fn add(&mut self, time: f64, y: Vec<f64>) -> (f64, f64) {
-        let size = norm(&y);
-        let mut least = f64::INFINITY;
-        for (errors, (count, (_, before))) in
+        let apart = |from: &[f64]| -> f64 {
+            norm(&y.iter().zip(from).map(|(a, b)| a - b).collect::<Vec<f64>>())
+        };
+        let whole = norm(&y);
+        let size = if self.lowest.is_empty() { whole } else { 0.5 * apart(&self.lowest) };
+        let (mut least, mut largest) = (f64::INFINITY, size);
+        for (errors, (count, (_, before, own))) in
             self.errors.iter_mut().zip((1..).zip(self.last.iter().rev()))
         {
-            let apart: Vec<f64> = y.iter().zip(before).map(|(a, b)| a - b).collect();
-            let error = if size > 0.0 { norm(&apart) / size } else { 0.0 };
+            // A period of several maxima is as large as the largest.
+            largest = largest.max(*own);
+            let error = if largest > 0.0 { apart(before) / largest } else { 0.0 };
             least = least.min(error);
             errors.push_back(error);
             if errors.len() > count * PERIODS {
                 errors.pop_front();
             }
         }
-        self.last.push_back((time, y));
+        self.shares.push_back(if whole > 0.0 { size / whole } else { 0.0 });
+        if self.shares.len() > PERIODS {
+            self.shares.pop_front();
+        }
+        self.last.push_back((time, y, size));
         if self.last.len() > MOST {
             self.last.pop_front();
         }
         (size, least)
+    }
+
+    /// Whether next to nothing is left of the motion about an equilibrium, and it does not grow.
+    pub(super) fn faded(&self) -> bool {
+        let largest =
+            |range: std::ops::Range<usize>| self.shares.range(range).copied().fold(0.0, f64::max);
+        if self.shares.len() < PERIODS {
+            return false;
+        }
+        let (first, last) = (largest(0..PERIODS / 2), largest(PERIODS / 2..PERIODS));
+        first <= self.tolerance && last <= first
     }
 
     /// Whether the motion has closed, and will: over the last periods the closing error has been

@@ -101,6 +101,12 @@ class Reason(Ending):
         Motion.UNDECIDED,
         "The run was stopped before this was decided. Run it again.",
     )
+    FADED = (
+        "faded",
+        Motion.DECAYING,
+        "Next to nothing is left of the motion about an equilibrium away from the origin. Nothing "
+        "needs to be done.",
+    )
 
 
 class FateArrays(Columns):
