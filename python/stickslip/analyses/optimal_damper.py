@@ -136,10 +136,10 @@ def _least(
 
 def _diagnostics(result: OptimalDamper) -> tuple[Diagnostic, ...]:
     low, high = result.bounds
-    unit = result.curve.settings.variation.unit
+    behind = result.curve.settings.variation.behind
     return present(
         (
-            told("coarse-search", low=low, high=high, _unit=unit),
+            told("coarse-search", low=low, high=high, _behind=behind),
             result.at_bound and told("optimum-at-bound", value=result.value),
             *result.curve.diagnostics,
         )

@@ -229,7 +229,7 @@ TEXTS = {
     "the limit of {stiffness:.4g} and {_twice:.4g} N/m, some hundred times the stiffness of the "
     "structure at the contact, taken as linear in 1/k_d, and finite ones lie on the same line; the "
     "error estimate holds the whole last change.",
-    "coarse-search": "The least peak was looked for between {low:.6g} and {high:.6g} {_unit}; a "
+    "coarse-search": "The least peak was looked for between {low:.6g} and {high:.6g}{_behind}; a "
     "local minimum narrower than the coarse curve of 40 values may have been passed over.",
     "optimum-at-bound": "The least peak lies at a bound; a better one may lie outside.",
     "patterns": "Patterns were drawn from a {distribution} distribution of zero mean and unit "

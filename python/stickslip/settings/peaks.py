@@ -86,7 +86,8 @@ Portion = Annotated[tuple[int, int], Or(Some[Index], "tuple[int, int]", "(int, i
 _SEVERAL = "ArrayLike", "float or array_like"
 _Deviations = Annotated[Float, Or(ListOr[Ratio, Ratio], *_SEVERAL, _unsigned("0.05 for 5 %", ""))]
 _Couplings = Annotated[
-    Float, Or(Some[StiffnessValue], *_SEVERAL, _unsigned("stiffnesses in N/m", "N/m"))
+    Float,
+    Or(ListOr[StiffnessValue, StiffnessValue], *_SEVERAL, _unsigned("stiffnesses in N/m", "N/m")),
 ]
 _Patterns = Annotated[
     int | Float,

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from math import inf
 from numbers import Real
-from typing import Annotated, Any, Generic, Literal, Self, TypeAlias, TypeVar
+from typing import Annotated, Any, Generic, Literal, Self, TypeAlias, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,6 +48,7 @@ from stickslip.units import physical_number, without_units
 
 Float: TypeAlias = NDArray[np.float64]
 _T = TypeVar("_T")
+_R = TypeVar("_R")
 
 
 @dataclass(frozen=True)
@@ -178,6 +179,9 @@ def _names(given: object) -> tuple[str, ...]:
 # ------------------------------------------------------------------------------------- study files
 
 
+_Spacing = Annotated[Literal["linear", "log"], ONE_OF]
+
+
 class _Ends(Table, Generic[_T]):
     """The two ends of a range."""
 
@@ -190,16 +194,47 @@ class _Ends(Table, Generic[_T]):
 
 
 class _Range(_Ends[_T], Generic[_T]):
-    """A range, or values in it that are spaced logarithmically."""
+    """A range, or values in it."""
 
     points: Annotated[int, Whole(2, 100_000)] | None = Field(
         default=None, description="Number of values; left out: the whole range, to be followed."
     )
+    spacing: _Spacing | None = Field(
+        default=None, description="Spacing of the values; left out: logarithmic."
+    )
+
+    @model_validator(mode="after")
+    def _require_sense(self) -> Self:
+        if self.points is None:
+            if self.spacing is not None:
+                raise ValueError("'spacing' needs 'points'; without points the range is followed")
+            return self
+        begin, end = self._ends
+        if begin == end:
+            raise ValueError(f"'from' and 'to' are both {begin:g}; for one value write [{begin:g}]")
+        if inf in (begin, end):
+            raise ValueError(
+                "a range to inf has no values in between; give a finite 'to', or a list that "
+                "holds inf"
+            )
+        if self.spacing != "linear" and 0.0 in (begin, end):
+            raise ValueError(
+                "the range holds 0, and its spacing is logarithmic; begin above 0, or write "
+                "spacing = 'linear'"
+            )
+        return self
+
+    @property
+    def _ends(self) -> Span:
+        begin, end = cast("tuple[float, float | None]", (self.begin, self.end))
+        return begin, inf if end is None else end
 
     def values(self) -> Any:
         """Return what a call would give."""
-        ends: Any = self.begin, inf if self.end is None else self.end
-        return _span(ends) if self.points is None else np.geomspace(ends[0], ends[1], self.points)
+        if self.points is None:
+            return _span(self._ends)
+        space = np.linspace if self.spacing == "linear" else np.geomspace
+        return space(*self._ends, self.points)
 
 
 class PeakRange(_Ends[Omega]):
@@ -214,7 +249,7 @@ class OmegaRange(_Ends[Omega]):
         description="Number of points; left out: chosen to the tolerance.",
         examples=[400],
     )
-    spacing: Annotated[Literal["linear", "log"], ONE_OF] | None = Field(
+    spacing: _Spacing | None = Field(
         default=None, description="Spacing of the points; left out: linear."
     )
 
@@ -253,7 +288,7 @@ def _omega_form(value: object) -> str | None:
     return "<list>" if isinstance(value, list | tuple) else None
 
 
-def _speed_form(value: object) -> str:
+def _form(value: object) -> str:
     return _omega_form(value) or "<number>"
 
 
@@ -329,32 +364,34 @@ _Omegas = Annotated[
         custom_error_message="is neither {from = ..., to = ..., points = ...} nor a list",
     ),
 ]
-_Speeds = Annotated[
-    Annotated[SpeedRange, Tag("<range>")]
-    | Annotated[Some[Speed], Tag("<list>")]
-    | Annotated[Speed, Tag("<number>")],
-    Discriminator(_speed_form),
+_Values: TypeAlias = Annotated[
+    Annotated[_R, Tag("<range>")]
+    | Annotated[Some[_T], Tag("<list>")]
+    | Annotated[_T, Tag("<number>")],
+    Discriminator(_form),
 ]
-_Ratios = ListOr[Factor, RatioRange]
-_Stiffnesses = ListOr[_Rigid, StiffnessRange]
-_SlipForces = ListOr[SlipForce, SlipForceRange]
+"""A range, a list, or one number."""
+_Ratios = _Values[RatioRange, Factor]
+_Stiffnesses = _Values[StiffnessRange, _Rigid]
+_SlipForces = _Values[SlipForceRange, SlipForce]
+_Levels = _Values[LevelRange, Factor]
 
 Frequencies = Annotated[Float | Span, Or(_Omegas, *_BOTH, _grid)]
 PeakSpan = Annotated[Span, Or(PeakRange, "tuple[float, float]", "(float, float)", span_of)]
 SlipForces = Annotated[Float | Span, Or(_SlipForces, *_LIST, _from_zero("N"))]
 Stiffnesses = Annotated[Float | Span, Or(_Stiffnesses, *_LIST, _from_zero("N/m"))]
-Frictions = Annotated[Float | Span, Or(ListOr[Friction, FrictionRange], *_LIST, _not_negative(""))]
-Preloads = Annotated[Float | Span, Or(ListOr[NormalLoad, LoadRange], *_LIST, _not_negative("N"))]
+Frictions = Annotated[Float | Span, Or(_Values[FrictionRange, Friction], *_LIST, _not_negative(""))]
+Preloads = Annotated[Float | Span, Or(_Values[LoadRange, NormalLoad], *_LIST, _not_negative("N"))]
 Springs = Annotated[
-    Float | Span, Or(ListOr[StiffnessValue, SpringRange], *_LIST, _not_negative("N/m"))
+    Float | Span, Or(_Values[SpringRange, StiffnessValue], *_LIST, _not_negative("N/m"))
 ]
-Gaps = Annotated[Float, Or(Some[Length], *_LIST, _listed("m", "finite values"))]
-Levels = Annotated[Float | Span, Or(ListOr[Factor, LevelRange], *_LIST, _above_zero(""))]
-Amplitudes = Annotated[Float | Span, Or(ListOr[Factor, LevelRange], *_BOTH, _branch(""))]
+Gaps = Annotated[Float, Or(ListOr[Length, Length], *_LIST, _listed("m", "finite values"))]
+Levels = Annotated[Float | Span, Or(_Levels, *_LIST, _above_zero(""))]
+Amplitudes = Annotated[Float | Span, Or(_Levels, *_BOTH, _branch(""))]
 Ratios = Annotated[Float | Span, Or(_Ratios, *_BOTH, _branch(""))]
 BranchStiffnesses = Annotated[Float | Span, Or(_Stiffnesses, *_BOTH, _branch("N/m"))]
 BranchSlipForces = Annotated[Float | Span, Or(_SlipForces, *_BOTH, _branch("N"))]
-Speeds = Annotated[Float | Span, Or(_Speeds, *_LIST, _not_negative("rad/s"))]
+Speeds = Annotated[Float | Span, Or(_Values[SpeedRange, Speed], *_LIST, _not_negative("rad/s"))]
 SlipForceList = Annotated[Float, Or(Some[SlipForce], *_LIST, _above_zero("N"))]
 StiffnessList = Annotated[Float, Or(Some[StiffnessValue], *_LIST, _above_zero("N/m"))]
 Dofs = Annotated[tuple[str, ...], Or(Some[Dof], "Iterable[str] | str", "iterable of str", _names)]

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Annotated, Literal, TypeAlias
+from typing import Annotated, Any, Literal, TypeAlias
 
 import numpy as np
-from pydantic import Field, Strict
+from pydantic import Field, Strict, model_validator
 
 from stickslip import _core
-from stickslip.errors import ModelError
+from stickslip.errors import EntryError, ModelError
 from stickslip.model import Model, PointRef
 from stickslip.model.contact import Contact
 from stickslip.settings.entries import ONE_OF, NamedContact, Some
 from stickslip.settings.ranges import Or
 from stickslip.settings.settings import Settings
+from stickslip.units import without_units
 
 Parameter: TypeAlias = Literal[
     "slip_force",
@@ -71,6 +72,14 @@ class ParameterMode(Settings):
         description="Whether the contacts all take the value, or multiply their own by it. The "
         "stiffness of a structure-like damper is a matrix, and takes a factor alone.",
     )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _plain_factors(cls, data: object) -> object:
+        """Refuse values with a unit where factors are meant."""
+        if not isinstance(data, Mapping) or data.get("common") != "factor":
+            return data
+        return {key: _factors(one, key) if key in UNITS else one for key, one in data.items()}
 
 
 _Contacts = Annotated[
@@ -156,6 +165,19 @@ class Variation(ParameterMode):
         if self.common == "value":
             return value
         return own if np.isinf(own) else value * own
+
+
+def _factors(given: Any, entry: str) -> Any:
+    """Return what is given, numbers, texts or a range, with texts read as plain factors."""
+    if isinstance(given, Mapping):
+        return {key: _factors(one, f"{entry}.{key}") for key, one in given.items()}
+    try:
+        return without_units(given, "", entry)
+    except EntryError as error:
+        raise ModelError(
+            f"{error}, for common = 'factor' multiplies the contacts' own; leave it out to give "
+            "values"
+        ) from None
 
 
 def one_of(keys: Settings, *names: Swept) -> Swept:
