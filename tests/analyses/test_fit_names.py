@@ -61,3 +61,13 @@ def test_no_line_leads_to_numbers_that_were_not_found(undamped):
     keys = {one.name: getattr(undamped, one.name) for one in fields(undamped)}
     line = type(undamped)(**keys | {"arrays": broken}).plot().lines[1]
     assert np.isnan(line.get_ydata()).tolist() == (~solved).tolist()
+
+
+def test_a_loop_drawn_closed_is_one_period():
+    angle = 2.0 * np.pi * np.arange(16) / 16
+    u, f = np.cos(angle) + 0.2 * np.sin(2.0 * angle), np.sin(angle)
+    one = ss.MeasuredLoop("pad", u, f)
+    closed = ss.MeasuredLoop("pad", np.append(u, u[0]), np.append(f, f[0]))
+    assert closed.force.size == 16
+    np.testing.assert_array_equal(closed.series, one.series)
+    assert ss.MeasuredLoop("pad", np.append(u, u[0]), np.append(f, f[0] + 0.1)).force.size == 17

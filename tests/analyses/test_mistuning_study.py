@@ -343,3 +343,11 @@ def test_what_has_no_factor_is_refused():
     many = study(deviation=[0.01, 0.02], patterns=1)
     with pytest.raises(ss.ModelError, match=r"deviation: there are 2; give one of 0.01, 0.02"):
         many.factors("tip")
+
+
+def test_damping_of_modes_with_stuck_contacts_is_refused():
+    """It does not go with the root of the stiffness, as the core takes it."""
+    glued = ss.Jenkins("damper", stiffness=2.4e7, slip_force=np.inf)
+    disk = ring(damping=ss.ModalDamping(0.01, stuck=[glued]))
+    with pytest.raises(ss.ModelError, match=r"stuck=...\) of sectors that deviate .* one by one"):
+        ss.mistuning_study(disk, 0.1, omega=SPAN, patterns=2)

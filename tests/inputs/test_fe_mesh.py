@@ -74,6 +74,9 @@ def test_a_deck_has_nodes_numbers_and_elements(plate, numbers, mesh):
 def test_the_example_deck():
     mesh = ss.read_mesh(DECK)
     assert mesh.node_at([0.12, 0.0, 0.0]) == 49
+    assert mesh.node_at([0.12, 0.0, 0.0001], within="0.2 mm") == 49
+    with pytest.raises(ss.ModelError, match="within=5e-05"):
+        mesh.node_at([0.12, 0.0, 0.0001], within="0.05 mm")
     assert mesh.dof_at([0.1201, 0.0, 0.0], 3, within=1e-3) == "49.3"
 
 

@@ -54,3 +54,14 @@ def test_response_functions_are_those_of_one_force(tmp_path):
     both = ss.forced_response(ss.Model(BEAM.structure, BEAM.contacts, forces), GRID, 1)
     with pytest.raises(ss.ModelError, match="2 degrees of freedom have a force"):
         both.export(tmp_path / "a.uff")
+
+
+def test_the_head_tells_of_forces_beside_the_reference(tmp_path):
+    pytest.importorskip("pyuff")
+    disk = ss.reference.beam_ring(6, 7e3, 2)
+    ss.forced_response(disk, GRID, 3).export(tmp_path / "a.uff")
+    said = {one.about for one in ss.read_frf(tmp_path / "a.uff")}
+    assert said == {"to forces on all 6 sectors, engine order 2"}
+    model = BEAM.replaced(forces=[*BEAM.forces, ss.Force("damper", 1.0)])
+    frf = ss.Frf.of(ss.forced_response(model, GRID, 3), "tip", "tip", "bench")
+    assert frf.about == "with forces in proportion at damper; bench"

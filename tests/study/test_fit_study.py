@@ -9,6 +9,7 @@ from typer.testing import CliRunner
 import stickslip as ss
 from small_study import PAD
 from stickslip.cli import app
+from stickslip.settings.refusal import validated
 from stickslip.study import Study
 from stickslip.study.measurement_table import MeasurementTable
 
@@ -32,7 +33,6 @@ length_unit = "mm"
 file = "high.csv"
 dof = "tip"
 level = 3
-at = {"pad.slip_force" = 1.0}
 relative_noise = "1 %"
 frequency_unit = "Hz"
 length_unit = "mm"
@@ -163,6 +163,85 @@ def test_keys_that_change_nothing_are_refused(table, said):
         MeasurementTable(**table)
 
 
+TIP = {"file": "a.csv", "dof": "tip"}
+
+
+@pytest.mark.parametrize(
+    ("table", "noise"),
+    [
+        (TIP | {"noise": "0.01 mm", "length_unit": "mm"}, 1e-5),
+        (TIP | {"noise": "0.01 mm"}, 1e-5),
+        (TIP | {"noise": 0.01}, 0.01),
+        ({"file": "a.csv", "contact": "pad", "noise": "2 N", "length_unit": "mm"}, 2.0),
+        ({"file": "a.csv", "contact": "pad", "noise": 2.0, "length_unit": "mm"}, 2.0),
+    ],
+)
+def test_noise_has_the_unit_that_is_written(table, noise, tmp_path):
+    rows = "\n".join(f"{at + 1}, {at % 3 + 1}" for at in range(16))
+    (tmp_path / "a.csv").write_text(rows, encoding="utf-8")
+    assert MeasurementTable(**table).read(tmp_path).noise == pytest.approx(noise)
+
+
+@pytest.mark.parametrize(
+    ("table", "said"),
+    [
+        ({"noise": 0.01, "length_unit": "mm"}, "write its unit, '0.01 mm' or '0.01 m'"),
+        ({"noise": "5 N"}, "noise = '5 N' is not a length"),
+        ({"noise": [1]}, r"noise: \[1\] is not a number; give a single one, no list$"),
+        ({"at": {"pad.slip_force": "5 m"}}, r"at\['pad.slip_force'\] = '5 m' is not a force"),
+        ({"at": {"pad.slip_force": [1]}}, r"at\['pad.slip_force'\]: \[1\] is not a number"),
+        ({"at": 5}, "at: 5 is no table"),
+    ],
+)
+def test_noise_and_values_of_another_unit_are_refused(table, said, tmp_path):
+    (tmp_path / "a.csv").write_text("1, 2\n3, 4\n", encoding="utf-8")
+    with pytest.raises(ss.ModelError, match=said):
+        validated(MeasurementTable, TIP | table).read(tmp_path)
+
+
+def at(given: str, parameters: str = '"damping.ratio" = [1e-3, 1e-1]') -> str:
+    text = STUDY.replace("level = 3", f"level = 3\nat = {{{given}}}")
+    begin, end = text.index("parameters"), text.index("\nintervals")
+    return f"{text[:begin]}parameters = {{{parameters}}}{text[end:]}"
+
+
+def test_values_of_one_test_have_units(folder):
+    (folder / "study.toml").write_text(at('"pad.slip_force" = "0.5 N"'), encoding="utf-8")
+    study = Study.load(folder / "study.toml")
+    analysis = study.tables.analysis
+    second = analysis.measurement[1].test(analysis._read[1], study.model, analysis.parameters)
+    assert second.model.contacts[0].slip_force == 0.5
+    assert second.model.forces[0].amplitude == 3.0
+
+
+@pytest.mark.parametrize(
+    "given", ['"pad.slip_force" = 1', "slip_force = 1", '"pad.slip_force" = 2']
+)
+def test_what_is_fitted_has_no_value_of_one_test(folder, given):
+    text = at(given, '"slip_force" = [0.1, 10]')
+    (folder / "study.toml").write_text(text, encoding="utf-8")
+    with pytest.raises(ss.ModelError, match=r"and 'slip_force' both set 'pad\.slip_force'"):
+        list(Study.load(folder / "study.toml").run())
+
+
+@pytest.mark.parametrize(("key", "force"), [("", 3.0), ('force = "7 N"', 7.0)])
+def test_response_functions_are_times_the_force_of_the_model(folder, key, force):
+    pytest.importorskip("pyuff")
+    frf = ss.Frf([90.0, 95.0, 99.0], [1e-4, 2e-4, 3e-4], "tip", "tip")
+    ss.write_frf(folder / "a.uff", frf)
+    table = f'file = "a.uff"\ndof = "tip"\nlevel = 3\n{key}'
+    text = STUDY[: STUDY.index("file =")] + table
+    (folder / "study.toml").write_text(text, encoding="utf-8")
+    study = Study.load(folder / "study.toml")
+    analysis = study.tables.analysis
+    (made,) = (
+        one.test(read, study.model, analysis.parameters)
+        for one, read in zip(analysis.measurement, analysis._read, strict=True)
+    )
+    np.testing.assert_allclose(made.amplitude, force * np.abs(frf.values))
+    np.testing.assert_allclose(made.observed, made.amplitude)
+
+
 def test_a_line_that_is_no_pair_is_named(folder):
     (folder / "low.csv").write_text("1, 2\n3\n", encoding="utf-8")
     with pytest.raises(ss.ModelError, match="line 2"):
@@ -176,3 +255,12 @@ def test_a_frequency_response_function_is_a_measurement():
     assert one.omega.tolist() == [1.0, 2.0]
     assert one.amplitude.tolist() == pytest.approx([6.0, 6.0])
     assert one.measure == "fundamental"
+    structure = ss.Structure([[1.0]], [[1e4]], dofs=["tip"])
+    model = ss.Model(structure, forces=[ss.Force("tip", 6.0), ss.Force("tip", 1.0, harmonic=0)])
+    own = ss.Measurement.of_frf(frf, "tip", model=model)
+    assert own.amplitude.tolist() == pytest.approx([12.0, 12.0])
+    with pytest.raises(ss.ModelError, match="force: missing; give its amplitude"):
+        ss.Measurement.of_frf(frf, "tip")
+    several = model.replaced(forces=[ss.Force("tip", 6.0), ss.Force("tip", 1.0, phase=1.0)])
+    with pytest.raises(ss.ModelError, match="the model has 2 forces of harmonic 1"):
+        ss.Measurement.of_frf(frf, "tip", model=several)

@@ -166,6 +166,9 @@ def test_speed_makes_the_model():
     stiffness = 1e4 + 0.5 * np.array([20 * np.pi, 100 * np.pi]) ** 2
     np.testing.assert_allclose(tops, np.sqrt(stiffness), rtol=1e-3)
     assert found.labels == ("speed = 600 rpm", "speed = 3000 rpm")
+    assert found.at("3000 rpm") is found.at(300.0) is found.results[1]
+    with pytest.raises(ss.ModelError, match="3000 lies outside the sweep, whose nearest is"):
+        found.at(3000)
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,12 @@ import numpy as np
 
 from stickslip.analyses.arguments import known_dofs, require_forced, require_held
 from stickslip.analyses.fit_assumptions import fit_assumptions
-from stickslip.analyses.fit_parameters import FitParameter, applied
+from stickslip.analyses.fit_parameters import (
+    FitParameter,
+    applied,
+    require_distinct,
+    require_unit,
+)
 from stickslip.analyses.misfit import Misfit
 from stickslip.analyses.profile import covariance, covariance_ends, profile_ends
 from stickslip.analyses.run import Progress, Run, share
@@ -25,7 +30,7 @@ from stickslip.model.measurement import (
 )
 from stickslip.results.fields import Float
 from stickslip.results.fit import AGAINST, KINDS, QUANTITIES, Fit, FitArrays
-from stickslip.settings.fit import FitSettings
+from stickslip.settings.fit import FitKeys, FitSettings
 from stickslip.settings.settings import configured
 
 _FOLLOWED = 8
@@ -40,7 +45,7 @@ _SEARCH = 0.6
 """Share of the progress that the best fit is given."""
 
 
-@configured(FitSettings)
+@configured(FitKeys)
 def fit(
     model: Model,
     measured: Iterable[Measured],
@@ -80,11 +85,15 @@ def fit(
     ----------
     Venzon and Moolgavkar (1988): intervals by profiles of the likelihood.
     """
+    given = settings.parameters
     settings = FitSettings.of(**settings.part(FitSettings))
     tests = _tests(measured)
     parameters = [FitParameter(name, *ends) for name, ends in settings.parameters.items()]
     for test in tests:
-        _require(test, model if test.model is None else test.model, parameters, settings)
+        own = model if test.model is None else test.model
+        _require(test, own, parameters, settings)
+        for name, ends in given.items():
+            require_unit(own, name, ends)
     numbers = sum(test.observed.size for test in tests)
     if numbers < len(parameters):
         raise ModelError(
@@ -293,6 +302,7 @@ def _require(
     """Refuse a test that the model does not fit."""
     for one in parameters:
         one.require(model)
+    require_distinct(model, settings.parameters)
     if isinstance(test, Measurement | MeasuredPeak):
         known_dofs([test.dof], f"{test.kind}: dof", "dof", model)
         require_forced(model, settings)

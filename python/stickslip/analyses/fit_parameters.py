@@ -2,18 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from stickslip.checks import unknown
-from stickslip.errors import ModelError
+from stickslip.analyses.variation import chosen_contacts
+from stickslip.checks import listed, unknown
+from stickslip.errors import EntryError, ModelError
 from stickslip.model import Model
-from stickslip.model.contact import Contact
+from stickslip.model.contact import Contact, of_one_unit
 from stickslip.model.damping import ModalDamping, Rayleigh
 from stickslip.model.structure import Structure
 from stickslip.results.fields import Float
+from stickslip.settings.variation import (
+    Chosen,
+    Common,
+    located,
+    with_parameter,
+    written,
+)
+from stickslip.units import without_units
 
 DAMPING = "damping"
 LEVEL = "level"
@@ -92,23 +101,69 @@ class FitParameter:
                 return _loaded(model, value)
             if self.is_damping:
                 return model.with_structure(_damped(model.structure, self.key, value))
-            return model.replaced(contacts=self._changed(model, value))
+            return with_parameter(model, self.key, self._chosen(model), lambda _: value)
         except ModelError as error:
             raise ModelError(f"parameters: {self.name!r}: {error}") from None
 
-    def _changed(self, model: Model, value: float) -> list[Contact]:
+    def _chosen(self, model: Model) -> tuple[Chosen, ...]:
+        """Return the contacts that take its value: those that a damper curve would choose."""
         owners = [one for one in model.contacts if self.owner in ("", one.name)]
         if not owners:
             raise ModelError(unknown("contact", self.owner, [*model.contact_names, DAMPING]))
-        having = [one for one in owners if self.key in one.adjustable()]
+        having: Sequence[Contact] = [one for one in owners if self.key in one.adjustable()]
         if not having:
             known = dict.fromkeys(key for one in owners for key in one.adjustable())
             raise ModelError(unknown("parameter", self.key, known))
+        having = of_one_unit(having, self.key)
+        factors = [str(one.name) for one in having if self.key in one.factors]
+        if 0 < len(factors) < len(having):
+            values = [str(one.name) for one in having if self.key not in one.factors]
+            raise ModelError(
+                f"it is a factor on a matrix in {listed(factors)} and a value in {listed(values)}; "
+                f"name one contact, as {f'{values[0]}.{self.key}'!r}"
+            )
+        common: Common = "factor" if factors else "value"
+        return chosen_contacts(model, self.key, self.owner or None, common)
 
-        def changed(one: Contact) -> Contact:
-            return one.adjusted(self.key, [value] * len(one.adjustable()[self.key]))
+    def is_factor(self, model: Model) -> bool:
+        """Whether it multiplies matrices of contacts, instead of being a value of theirs."""
+        if self.is_damping or self.name in (LEVEL, LOAD):
+            return False
+        ref = self._chosen(model)[0]
+        return self.key in model.contacts[located(model, ref)[0]].factors
 
-        return [changed(one) if one in having else one for one in model.contacts]
+    def reached(self, model: Model) -> set[tuple[str, str]]:
+        """Return what it sets in a model: contacts or their points, each with the parameter."""
+        if self.is_damping or self.name in (LEVEL, LOAD):
+            return {(self.owner, self.key)}
+        return {(one, self.key) for one in written(self._chosen(model))}
+
+
+def require_unit(model: Model, name: str, values: Iterable[object]) -> None:
+    """Refuse values with a unit of a parameter that is a factor."""
+    if not FitParameter(name, 0.0, np.inf).is_factor(model):
+        return
+    try:
+        without_units(list(values), "", f"parameters[{name!r}]")
+    except EntryError as error:
+        raise ModelError(f"{error}, for it is a factor on a matrix") from None
+
+
+def require_distinct(model: Model, names: Iterable[str], entry: str = "parameters") -> None:
+    """Refuse two parameters that set the same number of a model."""
+    found: dict[tuple[str, str], str] = {}
+    for name in names:
+        try:
+            places = FitParameter(name, 0.0, np.inf).reached(model)
+        except ModelError as error:
+            raise ModelError(f"{entry}: {name!r}: {error}") from None
+        for place in places:
+            if place in found:
+                raise ModelError(
+                    f"{entry}: {found[place]!r} and {name!r} both set {'.'.join(place)!r}; "
+                    "leave out one of them"
+                )
+            found[place] = name
 
 
 def applied(model: Model, parameters: Sequence[FitParameter], values: Float) -> Model:

@@ -19,6 +19,7 @@ from stickslip.analyses.pattern_store import Identity, PatternStore, Row, digest
 from stickslip.analyses.run import Progress, Run, refusals
 from stickslip.checks import brief, whole_number
 from stickslip.disk.bladed_disk import BladedDisk
+from stickslip.disk.mistuned import tuned_disk
 from stickslip.disk.pattern import drawn_patterns
 from stickslip.disk.sector import NEXT
 from stickslip.errors import ModelError
@@ -91,6 +92,8 @@ def mistuning_study(
     _require_stiff(deviations, rows)
     require_forced(disk, settings)
     disks = _coupled_disks(disk, settings.coupling_stiffness)
+    # Refuses what it cannot make before anything is computed.
+    tuned_disk(disk)
     count = deviations.size * len(disks) * len(rows) * len(names)
     # Deviations and peaks; the core has its own of the former.
     each = disk.sectors * deviations.size * len(disks) * len(rows)

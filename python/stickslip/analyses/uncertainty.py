@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import os
 import time
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
 from stickslip import _core
 from stickslip.analyses.arguments import known_dofs, require_forced, require_held
 from stickslip.analyses.cluster import Client
-from stickslip.analyses.fit_parameters import FitParameter
+from stickslip.analyses.fit_parameters import FitParameter, require_distinct, require_unit
 from stickslip.analyses.pattern_store import Identity, digest
 from stickslip.analyses.run import Progress, Run
 from stickslip.analyses.sample_run import RESIDUAL, SampleRun, Samples, sample_columns
@@ -88,7 +90,7 @@ def uncertainty(
     (4,)
     """
     kept = SampledSettings.of(**settings.part(SampledSettings))
-    work = _work_of(model, kept)
+    work = _work_of(model, kept, settings.parameters)
     start = time.perf_counter()
     with Run("uncertainty", progress) as run:
         whole = SampleRun(work)
@@ -103,7 +105,9 @@ def uncertainty(
         return run.ended(result, f"{len(whole.known)} of {kept.samples} samples", rest)
 
 
-def _work_of(model: Model, settings: SampledSettings) -> Samples:
+def _work_of(
+    model: Model, settings: SampledSettings, given: Mapping[str, Mapping[str, Any]]
+) -> Samples:
     """Return what is computed of a model, or refuse it."""
     quantity, names = settings.quantity, tuple(settings.parameters)
     sectors = 1
@@ -123,10 +127,12 @@ def _work_of(model: Model, settings: SampledSettings) -> Samples:
     laws = distributions(settings, inputs)
     shares = drawn_shares(settings.sampling, inputs, settings.samples, settings.seed)
     columns = [law.ppf(share) for law, share in zip(laws, shares.T, strict=True)]
-    for name, spec in settings.parameters.items():
-        if name not in (MISTUNING, RESIDUAL):
-            middle = float(distribution(spec).median())
-            FitParameter(name, middle, np.inf).apply(model, middle)
+    of_model = [name for name in names if name not in (MISTUNING, RESIDUAL)]
+    for name in of_model:
+        middle = float(distribution(settings.parameters[name]).median())
+        FitParameter(name, middle, np.inf).apply(model, middle)
+        require_unit(model, name, [given[name]["loc"], given[name]["scale"]])
+    require_distinct(model, of_model)
     if isinstance(quantity, HighestPeak | Optimum):
         known_dofs([quantity.dof], f"{quantity.kind}: dof", "dof", model)
         require_forced(model, settings)

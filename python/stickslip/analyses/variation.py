@@ -13,7 +13,7 @@ from stickslip.disk.mistuned import MistunedDisk
 from stickslip.errors import ModelError
 from stickslip.model import Model, PointRef, natural_frequencies
 from stickslip.model.configurations import every_point
-from stickslip.model.contact import Contact
+from stickslip.model.contact import Contact, of_one_unit
 from stickslip.results.fields import Float
 from stickslip.settings.entries import Span
 from stickslip.settings.variation import (
@@ -24,6 +24,7 @@ from stickslip.settings.variation import (
     Swept,
     Variation,
     located,
+    written,
 )
 
 MARGIN = 0.05
@@ -45,7 +46,7 @@ def variation_of(
 
 def chosen_contacts(
     model: Model,
-    parameter: Swept,
+    parameter: str,
     contacts: Contacts | None,
     common: Common,
     known: Known = _ADJUSTABLE,
@@ -65,7 +66,7 @@ def chosen_contacts(
         raise ModelError("contacts: empty; name at least one, or leave it out for all")
     chosen = [one for ref in given for one in _chosen(ref, parameter, model, common, known)]
     if len(set(chosen)) < len(chosen):
-        names = Variation(parameter=parameter, contacts=tuple(chosen)).names
+        names = written(chosen)
         raise ModelError(f"contacts: one is given more than once in {listed(names)}")
     return tuple(chosen)
 
@@ -75,9 +76,7 @@ def _is_point(contacts: object) -> bool:
     return isinstance(contacts, tuple) and [type(part) for part in contacts] == [str, int]
 
 
-def _all_contacts(
-    parameter: Swept, model: Model, common: Common, known: Known
-) -> tuple[Chosen, ...]:
+def _all_contacts(parameter: str, model: Model, common: Common, known: Known) -> tuple[Chosen, ...]:
     """Return the contacts that have the parameter; of slip forces those that are finite, if any."""
     able = [one for one in model.contacts if parameter in known(one)]
     if not able:
@@ -87,13 +86,14 @@ def _all_contacts(
     taking = [one for one in able if common == "factor" or parameter not in one.factors]
     if not taking:
         raise _without_value(str(able[0].name), parameter)
+    taking = taking if common == "factor" else of_one_unit(taking, parameter)
     slips = [one for one in taking if min(known(one)[parameter]) < np.inf]
     chosen = slips if parameter == "slip_force" and slips else taking
     return tuple(ref for one in chosen for ref in _points(one, parameter, known))
 
 
 def _chosen(
-    ref: PointRef, parameter: Swept, model: Model, common: Common, known: Known
+    ref: PointRef, parameter: str, model: Model, common: Common, known: Known
 ) -> tuple[Chosen, ...]:
     """Return the contact that is meant, or the points of it that have a value each."""
     position, point = model.slider(ref) if isinstance(ref, tuple | list) else (ref, None)
@@ -112,7 +112,7 @@ def _chosen(
     )
 
 
-def _points(contact: Contact, parameter: Swept, known: Known) -> tuple[Chosen, ...]:
+def _points(contact: Contact, parameter: str, known: Known) -> tuple[Chosen, ...]:
     """Return a contact, or its points if each has a value; those that are finite, if any."""
     own, name = known(contact)[parameter], str(contact.name)
     if len(own) == 1:
@@ -121,7 +121,7 @@ def _points(contact: Contact, parameter: Swept, known: Known) -> tuple[Chosen, .
     return tuple((name, point) for point in finite or range(len(own)))
 
 
-def _without_value(name: str, parameter: Swept) -> ModelError:
+def _without_value(name: str, parameter: str) -> ModelError:
     return ModelError(
         f"contact {name!r}: its {parameter} is that of several parts, which takes no value; "
         'common="factor" multiplies it'

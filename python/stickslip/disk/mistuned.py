@@ -229,6 +229,12 @@ def tuned_disk(disk: Sector) -> _core.TunedDisk:
     if isinstance(law, Rayleigh):
         constant, proportional = law.mass * sector.mass, law.stiffness * sector.stiffness
     elif isinstance(law, ModalDamping):
+        if law.stuck:
+            raise ModelError(
+                "damping: ModalDamping(..., stuck=...) of sectors that deviate is no multiple of "
+                "that of the tuned one; give Structure the matrix structure.damping, which stays, "
+                "a ratio without stuck, or compute disk.mistuned(pattern) one by one"
+            )
         constant, root = nothing, constant
     return from_core(
         _core.TunedDisk,

@@ -16,7 +16,6 @@ from stickslip.checks import (
     brief,
     members,
     real_array,
-    real_number,
     set_fields,
     unknown,
     whole_array,
@@ -31,6 +30,7 @@ from stickslip.fe.surface import Places, Surface
 from stickslip.fe.vtu import write_vtu
 from stickslip.results.arrays import Measure, amplitude_of
 from stickslip.results.forced_response import ForcedResponse
+from stickslip.units import physical_number
 
 Part: TypeAlias = str | NDArray[np.bool_]
 """A surface or a set of nodes by its name, or which nodes of the mesh it has."""
@@ -177,15 +177,16 @@ class Mesh:
         ]
         return self._surface_of(whole, entry)
 
-    def node_at(self, point: ArrayLike, within: float | None = None) -> int:
+    def node_at(self, point: ArrayLike, within: float | str | None = None) -> int:
         """Return the number of the node nearest to a point.
 
         Parameters
         ----------
         point : array_like of float, shape (3,)
             Coordinates, in the unit of the mesh.
-        within : float, optional
-            How far away the node may be. Default: any distance.
+        within : float or str, optional
+            How far away the node may be, as a text with its unit of a mesh in m. Default: any
+            distance.
 
         Raises
         ------
@@ -197,15 +198,16 @@ class Mesh:
             raise ModelError(f"point: {brief(point)} has not three finite coordinates")
         distances = np.linalg.norm(self.nodes - place, axis=1)
         nearest = int(distances.argmin())
-        if within is not None and distances[nearest] > real_number(within, "within"):
+        reach = np.inf if within is None else physical_number(within, "m", "within")
+        if distances[nearest] > reach:
             raise ModelError(
                 f"point: the node nearest to {place.tolist()} is {self.numbers[nearest]}, "
-                f"{distances[nearest]:.3g} away; allow more than within={within:g}, or look at the "
+                f"{distances[nearest]:.3g} away; allow more than within={reach:g}, or look at the "
                 "unit of the mesh"
             )
         return int(self.numbers[nearest])
 
-    def dof_at(self, point: ArrayLike, direction: int, within: float | None = None) -> str:
+    def dof_at(self, point: ArrayLike, direction: int, within: float | str | None = None) -> str:
         """Return the degree of freedom of the node nearest to a point, "node.direction".
 
         `direction` is 1, 2 or 3, of rotations 4, 5 or 6; see `node_at`.

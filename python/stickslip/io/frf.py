@@ -24,6 +24,7 @@ from stickslip.checks import (
     set_fields,
     text,
 )
+from stickslip.disk import BladedDisk
 from stickslip.errors import ModelError
 from stickslip.files import write
 from stickslip.io.source import readable
@@ -158,13 +159,22 @@ class Frf:
         solved = response.converged
         order = np.argsort(response.omega[solved])
         motion = response.coefficients(dof)[solved, 1] / amplitude
-        return cls(response.omega[solved][order], motion[order], dof, reference, about=about)
+        said = "; ".join(filter(None, (_further(response.model, reference), about)))
+        return cls(response.omega[solved][order], motion[order], dof, reference, about=said)
 
     def receptance(self) -> NDArray[np.complex128]:
         """Return displacement per force [m/N], shape (n,); of derivatives nan at 0 rad/s."""
         with np.errstate(divide="ignore", invalid="ignore"):
             moved = self.values / (1j * self.omega) ** _DERIVATIVES[self.quantity]
         return np.where(np.isfinite(moved), moved, np.nan)
+
+
+def _further(model: Model, reference: str) -> str:
+    """Tell of the forces that act beside that at the reference."""
+    if isinstance(model, BladedDisk):
+        return f"to forces on all {model.sectors} sectors, engine order {model.engine_order}"
+    others = dict.fromkeys(f.dof for f in model.forces if f.harmonic == 1 and f.dof != reference)
+    return f"with forces in proportion at {', '.join(others)}" if others else ""
 
 
 def read_frf(path: str | os.PathLike[str]) -> tuple[Frf, ...]:

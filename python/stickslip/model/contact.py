@@ -43,6 +43,9 @@ class Contact(ABC):
     factors: ClassVar[frozenset[str]] = frozenset()
     """Adjustable parameters that are factors on what the contact was given: they take no value."""
 
+    other_units: ClassVar[frozenset[str]] = frozenset()
+    """Adjustable parameters that are in another unit than those of this name elsewhere."""
+
     slips: ClassVar[bool] = True
     """Whether its points stick and slip; a spring without friction remembers no force."""
 
@@ -273,6 +276,11 @@ class Contact(ABC):
             "parameters": {key: _plain(value) for key, value in self._values().items()},
             "name": self.name,
         }
+
+
+def of_one_unit(contacts: Sequence[Contact], parameter: str) -> Sequence[Contact]:
+    """Return the contacts whose parameter has the unit that it has elsewhere; all if none has."""
+    return [one for one in contacts if parameter not in one.other_units] or contacts
 
 
 class Sliders(Contact):

@@ -127,6 +127,7 @@ class Cubic(_Spring):
 
     law: ClassVar[str] = "cubic"
     keys: ClassVar[tuple[str, ...]] = ("stiffness",)
+    other_units: ClassVar[frozenset[str]] = frozenset({"stiffness"})
 
     stiffness: float = field(kw_only=True)
 

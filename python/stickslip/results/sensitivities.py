@@ -10,6 +10,7 @@ from stickslip import _core
 from stickslip.checks import constant, listed, text, unknown
 from stickslip.errors import ModelError
 from stickslip.model import Model, PointRef
+from stickslip.model.contact import of_one_unit
 from stickslip.results.arrays import Arrays, Measure, amplitude_of
 from stickslip.results.contact_motion import ContactMotion
 from stickslip.results.fields import Float
@@ -265,10 +266,12 @@ def _causes(
     if not causes:
         names = [*dict.fromkeys(name for _, name in known), *(COMMON if contact is None else ())]
         raise ModelError(unknown("parameter", parameter, names))
-    owners = {name if isinstance(name, str) else name[0] for name, _ in causes}
-    factors = {
-        one for one in owners if parameter in model.contacts[model.contact_index(one)].factors
-    }
+    named = {key: key[0] if isinstance(key[0], str) else key[0][0] for key in causes}
+    all_having = [one for one in model.contacts if one.name in named.values()]
+    having = of_one_unit(all_having, str(parameter))
+    owners = {str(one.name) for one in having}
+    causes = {key: cause for key, cause in causes.items() if named[key] in owners}
+    factors = {str(one.name) for one in having if parameter in one.factors}
     if factors and factors != owners:
         raise ModelError(
             f"parameter: {parameter!r} is a factor on a matrix in {listed(sorted(factors))} and a "

@@ -12,7 +12,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from stickslip import _core
-from stickslip.checks import constant, real_number
+from stickslip.checks import constant
 from stickslip.drawn import Axes, Drawn, plots
 from stickslip.errors import ModelError
 from stickslip.model import Model
@@ -23,6 +23,7 @@ from stickslip.results.result import Result
 from stickslip.results.stored_model import model_of, model_variables
 from stickslip.results.table import Family, Tables
 from stickslip.settings.sweep import SweepSettings
+from stickslip.units import physical_number
 
 _SEVERAL = ("curves", "damper", "limit_cycles", "backbone")
 """Figures of several results."""
@@ -84,10 +85,29 @@ class Sweep(Result):
         """Whether a figure shows all results, as response curves."""
         return _figure_of(self.results[0]) in _SEVERAL
 
-    def at(self, value: float) -> Result:
-        """Return the result at the value nearest to one."""
-        near = real_number(value, "value")
-        return self.results[int(np.abs(self.values - near).argmin())]
+    def at(self, value: float | str) -> Result:
+        """Return the result at the value nearest to one.
+
+        Parameters
+        ----------
+        value : float or str
+            The value in the sweep's `unit`, of a speed in rad/s; or a text with its unit, as
+            "3000 rpm".
+
+        Raises
+        ------
+        ModelError
+            If it lies beyond all values by more than half of the widest step between them.
+        """
+        near = physical_number(value, "" if self.unit == "1" else self.unit, "value")
+        distances, steps = np.abs(self.values - near), np.abs(np.diff(np.sort(self.values)))
+        nearest = int(distances.argmin())
+        if distances[nearest] > 0.5 * steps.max(initial=0.0 if steps.size else abs(near)):
+            raise ModelError(
+                f"value: {near:g} lies outside the sweep, whose nearest is {self.labels[nearest]}; "
+                "give a value within, in SI units or with its unit"
+            )
+        return self.results[nearest]
 
     def plot(self, *args: Any, **options: Any) -> Axes:
         """Draw the family of curves; the arguments are those of the results' own `plot`."""

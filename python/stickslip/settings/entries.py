@@ -146,6 +146,12 @@ Dashpot = Annotated[
 Number = Annotated[
     float, BeforeValidator(lambda value: real_number(value, "")), WithJsonSchema({"type": "number"})
 ]
+Quantified = Annotated[
+    float | str,
+    PlainValidator(lambda one: one if isinstance(one, str) else real_number(one, "")),
+    _quantity_schema(),
+]
+"""A number, or a text whose unit is read where it is known which it has to be."""
 Flag = Annotated[bool, BeforeValidator(_flag)]
 Count = Annotated[int, Whole(1)]
 Index = Annotated[int, Whole(0)]

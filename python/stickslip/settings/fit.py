@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
@@ -24,23 +24,26 @@ def _ends(name: str, ends: object) -> tuple[float, float]:
     return low, high
 
 
-_Bounds = Annotated[
-    dict[str, tuple[float, float]],
-    by_parameter(_ends, "'friction': (0.1, 1.0)", "tuple[float, float]", "(float, float)"),
-]
+def _given_ends(name: str, ends: Any) -> tuple[Any, ...]:
+    _ends(name, ends)
+    return tuple(ends)
+
+
+_TAKEN = "'friction': (0.1, 1.0)", "tuple[float, float]", "(float, float)"
+_NAMES = Field(
+    description='Names of the parameters with their bounds: "pad.friction" of one contact; '
+    '"friction" of all contacts that have it, "slip_force" of those that can slip; '
+    '"damping.ratio", "damping.mass" and "damping.stiffness" of the damping law of the structure; '
+    '"level", a factor on all forces; "load", one on the static forces. Where the lower bound is '
+    "above 0 the logarithm is fitted.",
+    examples=[{"pad.friction": [0.1, 1.0]}],
+)
 
 
 class FitSettings(HarmonicSettings):
     """How parameters are fitted."""
 
-    parameters: _Bounds = Field(
-        description='Names of the parameters with their bounds: "pad.friction" of one contact; '
-        '"friction" of all contacts that have it; "damping.ratio", "damping.mass" and '
-        '"damping.stiffness" of the damping law of the structure; "level", a factor on all '
-        'forces; "load", one on the static forces. Where the lower bound is above 0 the logarithm '
-        "is fitted.",
-        examples=[{"pad.friction": [0.1, 1.0]}],
-    )
+    parameters: Annotated[dict[str, tuple[float, float]], by_parameter(_ends, *_TAKEN)] = _NAMES
     tolerance: Tolerance = Field(
         default=1e-4,
         description="Relative accuracy of automatic harmonics, from 1e-8 to 0.5.",
@@ -61,3 +64,9 @@ class FitSettings(HarmonicSettings):
     max_evaluations: Count = Field(
         default=200, description="Evaluations of all measurements per start before it is left."
     )
+
+
+class FitKeys(FitSettings):
+    """How parameters are fitted, with bounds as they are given: a model knows what is a factor."""
+
+    parameters: Annotated[dict[str, Any], by_parameter(_given_ends, *_TAKEN)] = _NAMES

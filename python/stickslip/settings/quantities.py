@@ -18,10 +18,9 @@ from stickslip.settings.entries import (
     Factor,
     Index,
     Measure,
-    Number,
+    Quantified,
     Some,
     Table,
-    Text,
     span_of,
 )
 from stickslip.settings.ranges import Or, PeakSpan, numbers, positive
@@ -204,7 +203,7 @@ class OptimumTable(Table):
     kind: Literal["optimum"] = Field(description="What is asked.")
     dof: Dof = Field(description="The degree of freedom.")
     parameter: Parameter = Field(default="slip_force", description="What is varied.")
-    bounds: Some[Number | Text] | None = Field(
+    bounds: Some[Quantified] | None = Field(
         default=None, description="Values to look between, in SI units or with one."
     )
     omega: PeakSpan | None = Field(default=None, description="Range of frequencies.")

@@ -8,13 +8,15 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field
 
-from stickslip.checks import brief, real_number, unknown
+from stickslip.checks import brief, unknown
 from stickslip.errors import EntryError
 from stickslip.settings.balance import HarmonicSettings
 from stickslip.settings.entries import ONE_OF, Count, Index
 from stickslip.settings.peaks import StoredKeys
 from stickslip.settings.quantities import AnyQuantity
 from stickslip.settings.ranges import by_parameter
+from stickslip.settings.variation import unit_of
+from stickslip.units import physical_number
 
 if TYPE_CHECKING:
     from scipy.stats.distributions import rv_frozen
@@ -23,6 +25,9 @@ _WANTED = (
     "give a frozen distribution of scipy.stats, as stats.uniform(0.2, 0.4) or "
     '{"distribution": "uniform", "loc": 0.2, "scale": 0.4}'
 )
+
+_UNITS = {"residual": "N"}
+"""Of parameters that are none of the model."""
 
 
 def distribution(spec: Mapping[str, Any]) -> rv_frozen[Any, Any]:
@@ -34,7 +39,7 @@ def distribution(spec: Mapping[str, Any]) -> rv_frozen[Any, Any]:
     return found
 
 
-def _spec_of(_: str, given: object) -> dict[str, Any]:
+def _spec_of(parameter: str, given: object) -> dict[str, Any]:
     """Return the name of a distribution with its shape parameters, location and scale."""
     from scipy import stats
 
@@ -63,7 +68,8 @@ def _spec_of(_: str, given: object) -> dict[str, Any]:
             continue
         if key not in (*shapes, "loc", "scale"):
             raise EntryError("", f": {unknown('key', key, [*shapes, 'loc', 'scale'])}")
-        numbers[key] = real_number(value, key)
+        unit = "" if key in shapes else _UNITS.get(parameter, unit_of(parameter))
+        numbers[key] = physical_number(value, unit, f".{key}")
     missing = [key for key in shapes if key not in numbers]
     if missing:
         raise EntryError("", f": {name} lacks {missing[0]!r}; {_WANTED}")
@@ -84,22 +90,26 @@ def _known() -> tuple[str, ...]:
     return tuple(name for name, one in vars(stats).items() if isinstance(one, stats.rv_continuous))
 
 
-_Distributions = Annotated[
-    dict[str, dict[str, Any]],
-    by_parameter(_spec_of, '"friction": stats.uniform(0.2, 0.4)', "object", "distribution"),
-]
+def _given_spec(parameter: str, given: object) -> dict[str, Any]:
+    """Return the same with texts as they are given."""
+    found = _spec_of(parameter, given)
+    return found | dict(given) if isinstance(given, Mapping) else found
+
+
+_TAKEN = '"friction": stats.uniform(0.2, 0.4)', "object", "distribution"
+_NAMES = Field(
+    description="Names of the uncertain parameters with their distributions, of scipy.stats: "
+    'those of `fit`; "residual", the force that stuck contacts hold [N]; "mistuning" of a '
+    "tuned disk, the deviation of the stiffness of every sector, which are drawn one by one. "
+    "Parameters are independent.",
+    examples=[{"pad.friction": {"distribution": "uniform", "loc": 0.2, "scale": 0.4}}],
+)
 
 
 class SampledSettings(HarmonicSettings):
     """What is uncertain, what is asked, and how it is sampled."""
 
-    parameters: _Distributions = Field(
-        description="Names of the uncertain parameters with their distributions, of scipy.stats: "
-        'those of `fit`; "residual", the force that stuck contacts hold [N]; "mistuning" of a '
-        "tuned disk, the deviation of the stiffness of every sector, which are drawn one by one. "
-        "Parameters are independent.",
-        examples=[{"pad.friction": {"distribution": "uniform", "loc": 0.2, "scale": 0.4}}],
-    )
+    parameters: Annotated[dict[str, dict[str, Any]], by_parameter(_spec_of, *_TAKEN)] = _NAMES
     quantity: AnyQuantity = Field(
         description="What is asked: a highest peak, an optimum, or a backbone."
     )
@@ -118,3 +128,5 @@ class SampledSettings(HarmonicSettings):
 
 class UncertaintyKeys(StoredKeys, SampledSettings):
     """How the quantity of a model with uncertain parameters is computed."""
+
+    parameters: Annotated[dict[str, dict[str, Any]], by_parameter(_given_spec, *_TAKEN)] = _NAMES

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Annotated, Any, Literal, TypeAlias
 
 import numpy as np
@@ -114,9 +114,7 @@ class Variation(ParameterMode):
     @property
     def names(self) -> tuple[str, ...]:
         """What is varied in words: names of contacts, points as "structural[0]"."""
-        return tuple(
-            ref if isinstance(ref, str) else f"{ref[0]}[{ref[1]}]" for ref in self.contacts
-        )
+        return written(self.contacts)
 
     def varied(self, model: Model) -> _core.Varied:
         """Return the variation as the compiled core takes it; refuse a model without a contact."""
@@ -148,23 +146,36 @@ class Variation(ParameterMode):
         if self.parameter == "level":
             return model.scaled(force=value)
 
-        def changed(contact: Contact) -> Contact:
-            chosen = [ref for ref in self.contacts if _name(ref) == contact.name]
-            if not chosen:
-                return contact
-            values = list(contact.variable()[self.parameter])
-            for ref in chosen:
-                for point in range(len(values)) if isinstance(ref, str) else [ref[1]]:
-                    values[point] = self._at(value, values[point])
-            return contact.adjusted(self.parameter, values)
-
-        return model.replaced(contacts=[changed(contact) for contact in model.contacts])
+        return with_parameter(
+            model, self.parameter, self.contacts, lambda own: self._at(value, own)
+        )
 
     def _at(self, value: float, own: float) -> float:
         """Return what becomes of a value; what never slips does so under every factor."""
         if self.common == "value":
             return value
         return own if np.isinf(own) else value * own
+
+
+def with_parameter(
+    model: Model, parameter: str, contacts: Iterable[Chosen], of: Callable[[float], float]
+) -> Model:
+    """Return the model with other values of a parameter of contacts, or of points of them.
+
+    `of` makes a value from what the contact has.
+    """
+
+    def changed(contact: Contact) -> Contact:
+        chosen = [ref for ref in contacts if _name(ref) == contact.name]
+        if not chosen:
+            return contact
+        values = list(contact.variable()[parameter])
+        for ref in chosen:
+            for point in range(len(values)) if isinstance(ref, str) else [ref[1]]:
+                values[point] = of(values[point])
+        return contact.adjusted(parameter, values)
+
+    return model.replaced(contacts=[changed(contact) for contact in model.contacts])
 
 
 def _factors(given: Any, entry: str) -> Any:
@@ -187,6 +198,11 @@ def one_of(keys: Settings, *names: Swept) -> Swept:
         got = f"{' and '.join(given)} are given" if given else "none is given"
         raise ModelError(f"{', '.join(names)}: {got}; give exactly one of them")
     return given[0]
+
+
+def written(contacts: Iterable[Chosen]) -> tuple[str, ...]:
+    """Return contacts, and points of them as "structural[0]"."""
+    return tuple(ref if isinstance(ref, str) else f"{ref[0]}[{ref[1]}]" for ref in contacts)
 
 
 def _name(ref: Chosen) -> str:

@@ -33,7 +33,7 @@ from stickslip.results.result import Result
 from stickslip.settings.balance import BalanceKeys
 from stickslip.settings.cycles import CycleKeys
 from stickslip.settings.entries import ByKey, Factor, Some, Table
-from stickslip.settings.fit import FitSettings
+from stickslip.settings.fit import FitKeys
 from stickslip.settings.modes import FlutterKeys, ModeKeys
 from stickslip.settings.motion import BasinKeys, StaticKeys, TransientKeys
 from stickslip.settings.orbits import CertifySettings, OrbitKeys, SingleHarmonicKeys
@@ -280,7 +280,7 @@ class LimitCyclesTable(CycleKeys, AnalysisTable):
         return limit_cycles(model, negative, settings=self, progress=progress)
 
 
-class FitTable(FitSettings, AnalysisTable):
+class FitTable(FitKeys, AnalysisTable):
     """Parameters of contacts and damping, fitted to measurements."""
 
     kind: Literal["fit"] = Field(description="The analysis.")
@@ -300,7 +300,7 @@ class FitTable(FitSettings, AnalysisTable):
     def run(self, model: Model, progress: Progress, shown: Sequence[str] = ()) -> Any:
         """Compute the fit."""
         pairs = zip(self._read, self.measurement, strict=True)
-        tests = [test.on(table.model_of(model)) for test, table in pairs]
+        tests = [table.test(read, model, self.parameters) for read, table in pairs]
         return fit(model, tests, settings=self, progress=progress)
 
 

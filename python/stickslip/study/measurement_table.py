@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
-from stickslip.analyses.fit_parameters import FitParameter
-from stickslip.errors import ModelError
+from stickslip.analyses.fit_parameters import FitParameter, require_distinct, require_unit
+from stickslip.checks import brief
+from stickslip.errors import EntryError, ModelError
 from stickslip.io.curve import read_curve
 from stickslip.io.frf import read_frf
 from stickslip.model import Model
 from stickslip.model.measurement import Measured, MeasuredBackbone, MeasuredLoop, Measurement
+from stickslip.model.measurement.curve import only_force
 from stickslip.settings.entries import (
     ONE_OF,
     Count,
@@ -22,12 +25,13 @@ from stickslip.settings.entries import (
     Index,
     Measure,
     Newtons,
-    Number,
+    Quantified,
     Ratio,
     Table,
     Text,
 )
-from stickslip.units import quantity
+from stickslip.settings.variation import unit_of
+from stickslip.units import physical_number, quantity
 
 _UFF = (".uff", ".unv", ".58")
 _OF_AMPLITUDES = ("relative_noise", "noise")
@@ -41,6 +45,18 @@ _USED = {
 """What is used of which kinds of files only."""
 _TOLD = {("function", "measure"): "fundamental"}
 """What is so in any case, and may be said."""
+
+
+def _own_values(given: object) -> dict[str, Any]:
+    """Check the values of parameters, each a number or a text with its unit."""
+    if not isinstance(given, Mapping):
+        raise EntryError("", f": {brief(given)} is no table; give {{parameter = value}}")
+    for name, value in given.items():
+        try:
+            physical_number(value, unit_of(name), "")
+        except EntryError as error:
+            raise EntryError("", f"[{name!r}]{error.said}") from None
+    return dict(given)
 
 
 class MeasurementTable(Table):
@@ -60,10 +76,15 @@ class MeasurementTable(Table):
         "that DOF, else modal ones [m kg^(1/2)].",
     )
     name: Text | None = Field(default=None, description="Its name in tables and pictures.")
+<<<<<<< HEAD
     level: Factor = Field(default=1.0, description="Factor on the forces that vary in this test.")
     at: dict[str, Number] = Field(
+=======
+    level: Factor = Field(default=1.0, description="Factor on all forces in this test.")
+    at: Annotated[dict[str, Any], BeforeValidator(_own_values)] = Field(
+>>>>>>> f536ffad (Parameters of fits and uncertain ones)
         default_factory=dict,
-        description="Parameters that this test had of its own, by name, in SI units.",
+        description="Parameters that this test had of its own, by name.",
         examples=[{"pad.preload": 120.0}],
     )
     measure: Measure = Field(
@@ -75,14 +96,19 @@ class MeasurementTable(Table):
     length_unit: Text = Field(
         default="m", description="Unit of the lengths of text files.", examples=["mm", "um"]
     )
-    force: Newtons = Field(default=1.0, description="Amplitude of the force, of UFF files [N].")
+    force: Newtons | None = Field(
+        default=None,
+        description="Amplitude of the force, of UFF files [N]. Default: that of the model's force "
+        "at this level.",
+    )
     harmonics: Count = Field(default=5, description="Harmonics of the displacement of a loop.")
     relative_noise: Ratio | None = Field(
         default=None, description="Standard deviation of the amplitudes over themselves."
     )
-    noise: Number | None = Field(
+    noise: Quantified | None = Field(
         default=None,
         description="Instead: standard deviation of all amplitudes [m], or forces [N].",
+        examples=["0.01 mm"],
     )
     frequency_noise: Ratio | None = Field(
         default=None, description="Of backbones: standard deviation of frequencies over themselves."
@@ -112,6 +138,11 @@ class MeasurementTable(Table):
             value, default = getattr(self, key), type(self).model_fields[key].default
             if kind not in kinds and value not in (default, _TOLD.get((kind, key), default)):
                 raise ValueError(f"{key!r} is for {said}; leave it out")
+        if isinstance(self.noise, float) and self.length_unit != "m" and kind != "loop":
+            raise ValueError(
+                f"noise = {self.noise:g} beside length_unit = {self.length_unit!r}; write its "
+                f"unit, '{self.noise:g} {self.length_unit}' or '{self.noise:g} m'"
+            )
 
     @property
     def _kind(self) -> str:
@@ -136,7 +167,8 @@ class MeasurementTable(Table):
             frfs = read_frf(file)
             if len(frfs) != 1:
                 raise ModelError(f"{file}: holds {len(frfs)} functions; give a file of one")
-            return Measurement.of_frf(frfs[0], self.dof, self.force, **more)
+            force = 1.0 if self.force is None else self.force
+            return Measurement.of_frf(frfs[0], self.dof, force, **more)
         first, second = read_curve(file)
         length = self._length
         if self.contact is not None:
@@ -169,8 +201,17 @@ class MeasurementTable(Table):
     def _rate(self) -> float:
         return quantity(f"1 {self.frequency_unit}", "rad/s", "frequency_unit")
 
-    def model_of(self, model: Model) -> Model:
-        """Return the model of the test."""
-        for name, value in self.at.items():
+    def test(self, read: Measured, model: Model, fitted: Iterable[str]) -> Measured:
+        """Return a measurement as `read`, with the model of its test, of which some is fitted."""
+        require_distinct(model, [*self.at, *fitted], f"measurement of {self.file!r}: at")
+        own = self._model_of(model)
+        if self._kind == "function" and self.force is None and isinstance(read, Measurement):
+            read = read.times(only_force(own))
+        return read.on(own)
+
+    def _model_of(self, model: Model) -> Model:
+        for name, given in self.at.items():
+            require_unit(model, name, [given])
+            value = physical_number(given, unit_of(name), name)
             model = FitParameter(name, value, np.inf).apply(model, value)
         return model.scaled(force=self.level)

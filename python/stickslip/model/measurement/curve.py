@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.checks import brief, choice, text
+from stickslip.checks import brief, choice, constant, set_fields, text
 from stickslip.errors import ModelError
 from stickslip.model.measurement.measured import MEASURES, Measured, above_zero, real_numbers
-from stickslip.model.model import ContactRef, Model
+from stickslip.model.model import ContactRef, Model, require_model
 from stickslip.units import physical_number
 
 if TYPE_CHECKING:
@@ -94,7 +95,7 @@ class Measurement(Measured):
         )
 
     @classmethod
-    def of_frf(cls, frf: Frf, dof: str, force: float = 1.0, **more: Any) -> Measurement:
+    def of_frf(cls, frf: Frf, dof: str, force: float | None = None, **more: Any) -> Measurement:
         """Return the curve of a frequency response function, as `read_frf` reads it.
 
         Parameters
@@ -104,14 +105,43 @@ class Measurement(Measured):
         dof : str
             The degree of freedom of the model that it was measured at.
         force : float, optional
-            Amplitude of the force in the test [N].
+            Amplitude of the force in the test [N]. Default: that of the force of `model`.
         **more
             Noise, model and name.
+
+        Raises
+        ------
+        ModelError
+            If there is neither a force nor a model that has one.
         """
-        level = physical_number(force, "N", "measurement: force")
+        if force is None and more.get("model") is None:
+            raise ModelError(
+                "measurement: force: missing; give its amplitude in the test [N], or the model"
+            )
+        given = only_force(more["model"]) if force is None else force
+        level = physical_number(given, "N", "measurement: force")
         kept = frf.omega > 0.0
         omega, amplitude = frf.omega[kept], abs(level) * np.abs(frf.receptance()[kept])
         return cls(omega, dof, amplitude, "fundamental", **more)
+
+    def times(self, factor: float) -> Self:
+        """Return the curve with its amplitudes multiplied."""
+        made = copy(self)
+        amplitude = constant(factor * self.amplitude)
+        set_fields(made, amplitude=amplitude, observed=amplitude)
+        return made
+
+
+def only_force(model: Model) -> float:
+    """Return the amplitude of the one force of the first harmonic that a model has [N]."""
+    require_model(model)
+    found = [abs(one.amplitude) for one in model.forces if one.harmonic == 1]
+    if len(found) != 1:
+        raise ModelError(
+            f"measurement: force: missing, and the model has {len(found)} forces of harmonic 1; "
+            "give the amplitude of that of the test [N]"
+        )
+    return found[0]
 
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
@@ -123,7 +153,8 @@ class MeasuredLoop(Measured):
     contact : int or str
         The contact; it has one displacement.
     displacement : array_like of float, shape (n,)
-        Relative displacement at equidistant instants of one period [m].
+        Relative displacement at equidistant instants of one period [m]. A last sample that
+        repeats the first, as of a loop that is drawn closed, is left out.
     force : array_like of float, shape (n,)
         The force against it at these instants [N].
     harmonics : int, optional
@@ -164,6 +195,8 @@ class MeasuredLoop(Measured):
     ) -> None:
         u = real_numbers(displacement, "m", "measured loop: displacement")
         f = real_numbers(force, "N", "measured loop: force")
+        if u.shape == f.shape and u.size > _FEWEST and (u[0], f[0]) == (u[-1], f[-1]):
+            u, f = u[:-1], f[:-1]
         if u.shape != f.shape or u.size < _FEWEST:
             raise ModelError(
                 f"measured loop: {u.size} displacements for {f.size} forces; give one force per "
