@@ -199,6 +199,16 @@ def test_noise_and_values_of_another_unit_are_refused(table, said, tmp_path):
         validated(MeasurementTable, TIP | table).read(tmp_path)
 
 
+@pytest.mark.parametrize(
+    ("change", "end"),
+    [('relative_noise = "5 N"', "or a plain number"), ("noise = true", "in SI units")],
+)
+def test_one_refusal_is_counted_once(change, end):
+    text = STUDY[: STUDY.index('relative_noise = "1 %"')]
+    with pytest.raises(ss.ModelError, match=f"{end}$"):
+        Study.parse(text + change)
+
+
 def at(given: str, parameters: str = '"damping.ratio" = [1e-3, 1e-1]') -> str:
     text = STUDY.replace("level = 3", f"level = 3\nat = {{{given}}}")
     begin, end = text.index("parameters"), text.index("\nintervals")

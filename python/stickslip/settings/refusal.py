@@ -51,11 +51,20 @@ def refusal(error: ValidationError) -> ModelError:
     ``contact 2: unknown key 'stifness'; did you mean 'stiffness'?``. Contacts, forces and positions
     in lists are counted from 1.
     """
-    first, *others = error.errors(include_url=False)
+    found = error.errors(include_url=False)
+    # To pydantic a list lacks the entries that it has refused.
+    whole = [one for one in found if not (one["type"] == "too_short" and _within(one, found))]
+    first, *others = whole
     cause = first.get("ctx", {}).get("error")
     more = f" (and {len(others)} more)" if others else ""
     study = f"{_worded(first, study=True)}{more}" if isinstance(cause, ModelError) else None
     return ModelError(f"{_worded(first)}{more}", study=study)
+
+
+def _within(one: ErrorDetails, found: Sequence[ErrorDetails]) -> bool:
+    """Return whether another finding is about a part of the entry of one."""
+    place = one["loc"]
+    return any(len(f["loc"]) > len(place) and f["loc"][: len(place)] == place for f in found)
 
 
 def _worded(finding: ErrorDetails, *, study: bool = False) -> str:
