@@ -93,7 +93,7 @@ def _wave_damping(model: Model) -> Diagnostic | None:
     omega, shape = float(np.sqrt(squared[mode])), shapes[:, mode]
     ratio = float((shape.conj() @ damping @ shape).real) / (2.0 * omega)
     if isinstance(law, ModalDamping):
-        meant = law.ratio[mode] if isinstance(law.ratio, tuple) else law.ratio
+        meant = float(np.broadcast_to(law.ratio, squared.shape)[mode])
     else:
         meant = 0.5 * (law.mass / omega + law.stiffness * omega)
     if abs(ratio - meant) <= _OTHER * abs(meant):

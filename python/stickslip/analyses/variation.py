@@ -86,7 +86,7 @@ def _all_contacts(parameter: str, model: Model, common: Common, known: Known) ->
     taking = [one for one in able if common == "factor" or parameter not in one.factors]
     if not taking:
         raise _without_value(str(able[0].name), parameter)
-    taking = taking if common == "factor" else of_one_unit(taking, parameter)
+    taking = taking if common == "factor" else list(of_one_unit(taking, parameter))
     slips = [one for one in taking if min(known(one)[parameter]) < np.inf]
     chosen = slips if parameter == "slip_force" and slips else taking
     return tuple(ref for one in chosen for ref in _points(one, parameter, known))

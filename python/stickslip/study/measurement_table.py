@@ -76,13 +76,8 @@ class MeasurementTable(Table):
         "that DOF, else modal ones [m kg^(1/2)].",
     )
     name: Text | None = Field(default=None, description="Its name in tables and pictures.")
-<<<<<<< HEAD
     level: Factor = Field(default=1.0, description="Factor on the forces that vary in this test.")
-    at: dict[str, Number] = Field(
-=======
-    level: Factor = Field(default=1.0, description="Factor on all forces in this test.")
     at: Annotated[dict[str, Any], BeforeValidator(_own_values)] = Field(
->>>>>>> f536ffad (Parameters of fits and uncertain ones)
         default_factory=dict,
         description="Parameters that this test had of its own, by name.",
         examples=[{"pad.preload": 120.0}],
