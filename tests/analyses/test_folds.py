@@ -85,6 +85,22 @@ def test_sweeps_jump_at_the_folds_in_their_direction(name):
         assert (sweep.stability == "stable").sum() > 0.9 * sweep.omega.size
 
 
+def test_jumps_whose_end_is_far_along_the_curve_are_told():
+    """Around the fold the way is so long that where it ends is not known, but that it turns is."""
+    structure = ss.Structure([[1.0]], [[1.0]], [[0.05]], ["x"])
+    stop = ss.Stop("x", stiffness=20.0, gap=1.0)
+    model = ss.Model(structure, [stop], [ss.Force("x", 0.2)])
+    curve = ss.forced_response(model, (0.4, 3.2), 5, stability=False)
+    sweep = ss.forced_response(model, np.linspace(0.4, 3.2, 113), 5)
+    (jump,) = sweep.jumps
+    last = curve.omega[curve.folds].max()
+    assert sweep.omega[jump - 1] <= last <= sweep.omega[jump]
+    assert [one.code for one in sweep.diagnostics].count("jump") == 1
+    assert sweep.peak("x").amplitude <= curve.peak("x").amplitude
+    # Points before the jump say nothing of those behind it.
+    assert sweep.iterations[jump + 1 :].max() < sweep.iterations[:jump].max()
+
+
 def state_of(frf, index):
     orders = np.arange(frf.coefficients("x0").shape[1])
     series = np.stack([frf.coefficients(dof)[index] for dof in frf.dofs])

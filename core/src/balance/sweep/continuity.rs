@@ -48,8 +48,9 @@ enum Reached {
     Same,
     /// To another one, without a turn on the way or with some.
     Other(Unknowns, bool),
-    /// Not known.
-    Lost,
+    /// Not known, but whether it has turned back before it met the new frequency: what was found there
+    /// lies behind that turn.
+    Lost(bool),
 }
 
 impl ForcedBalance<'_> {
@@ -76,12 +77,16 @@ impl ForcedBalance<'_> {
         if point.is_solved() && foretold(last, guess, point) {
             return Ok(());
         }
-        if let Reached::Other(start, turned) = self.reached(last, point)? {
-            let other = self.solve(point.omega, Some(&start))?;
-            if other.is_solved() {
-                *point = other;
-                point.jump = turned;
+        match self.reached(last, point)? {
+            Reached::Other(start, turned) => {
+                let other = self.solve(point.omega, Some(&start))?;
+                if other.is_solved() {
+                    *point = other;
+                }
+                point.jump = turned && point.is_solved();
             }
+            Reached::Lost(turned) => point.jump = turned && point.is_solved(),
+            Reached::Same => {}
         }
         if self.is_ended() {
             *point = self.not_computed(point.omega);
@@ -94,7 +99,7 @@ impl ForcedBalance<'_> {
         let finer = last.resolution().or_finer(point.resolution());
         let resolution = if solved { finer } else { last.resolution() };
         let (Some(known), found) = (last.unknowns(), point.unknowns().filter(|_| solved)) else {
-            return Ok(Reached::Lost);
+            return Ok(Reached::Lost(false));
         };
         let (from, to) = ((known, last.omega), found.map(|found| (found, point.omega)));
         if let (Some(coarse), Some(to)) = (self.coarser(resolution), to) {
@@ -270,23 +275,20 @@ fn rate(equations: &mut Condensed<'_>) -> Option<Vec<f64>> {
 fn followed(curve: &mut ForcedCurve<'_>, from: &[f64], to: Option<&[f64]>, end: f64) -> Reached {
     let sign = (end - from[from.len() - 1]).signum();
     let Some(mut walk) = Continuation::new(curve, from.to_vec(), sign, STEPS) else {
-        return Reached::Lost;
+        return Reached::Lost(false);
     };
     let (mut before, mut turned) = (from.to_vec(), false);
-    while walk.iterations < MOST {
-        if !matches!(walk.advance(curve), Advance::Point) {
-            return Reached::Lost;
-        }
+    while walk.iterations < MOST && matches!(walk.advance(curve), Advance::Point) {
         let omega = walk.point[walk.point.len() - 1];
         turned |= (omega - before[before.len() - 1]) * sign < 0.0;
         if (omega - end) * sign >= 0.0 {
             let Some((z, _)) = between(curve, &before, &walk.point, end) else {
-                return Reached::Lost;
+                break;
             };
             let same = !turned && to.is_some_and(|to| distance(&z, to) < SAME);
             return if same { Reached::Same } else { Reached::Other(curve.series(&z), turned) };
         }
         before.clone_from(&walk.point);
     }
-    Reached::Lost
+    Reached::Lost(turned)
 }
