@@ -91,3 +91,36 @@ def test_the_point_beside_a_peak_is_on_its_branch() -> None:
     assert place == np.nanargmax(frf.amplitude("tip"))
     assert frf.index(frf.peak("tip").omega) != place
     assert frf.summary()[0].error_estimate == frf.error_estimate("tip")[place]
+
+
+def bouncing(k, force=0.1, damping=0.02):
+    structure = ss.Structure([[1.0]], [[1.0]], [[damping]], ["x"])
+    return ss.Model(structure, [ss.Stop("x", stiffness=k, gap=1.0)], [ss.Force("x", force)])
+
+
+def test_peaks_on_a_fold_are_judged_by_their_own_motion():
+    """With fewer harmonics only the motion below the fold is left, which touches nothing."""
+    keys = {"level": [1.0], "dof": "x", "omega": (0.6, 3.0)}
+    found = ss.damper_curve(bouncing(20.0), **keys)
+    fine = ss.damper_curve(bouncing(20.0), **keys, harmonics=31)
+    assert found.arrays.harmonics[0] > 7
+    assert found.arrays.error_estimate[0] > 0.0
+    assert found.amplitude[0] == pytest.approx(fine.amplitude[0], rel=1e-4)
+
+
+@pytest.mark.parametrize("points", [24, 400])
+def test_peaks_of_a_map_are_reached_by_a_motion(points):
+    """No parabola leads through points of both branches of a fold."""
+    found = ss.design_map(
+        lambda k, force: bouncing(k, force, damping=0.05),
+        {"k": [2.0, 30.0], "force": [0.2]},
+        dof="x",
+        omega=(0.6, 3.0),
+        points=points,
+        threads=1,
+    )
+    for row, k in enumerate((2.0, 30.0)):
+        curve = ss.forced_response(bouncing(k, 0.2, 0.05), (0.6, 3.0), 31, stability=False)
+        assert found.status[row][0] == "converged"
+        highest = np.nanmax(curve.amplitude("x"))
+        assert found.amplitude[row, 0] == pytest.approx(highest, rel=1e-2)

@@ -210,6 +210,13 @@ impl<'a> ForcedBalance<'a> {
         self
     }
 
+    /// The same, and what is chosen automatically begins with no less than this.
+    #[must_use]
+    pub(crate) fn beginning_with(mut self, resolution: Resolution) -> Self {
+        self.control.begin_with(resolution);
+        self
+    }
+
     /// What a balance of the same contacts can use again.
     pub(crate) fn into_memory(self) -> WarmStart {
         let Self { tables, control, half_wave, profile, .. } = self;

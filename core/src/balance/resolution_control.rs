@@ -173,6 +173,13 @@ impl ResolutionControl {
         self.level.order = self.position(at);
     }
 
+    /// Has the next point begin with no less than this.
+    pub(super) fn begin_with(&mut self, at: Resolution) {
+        let enough = self.orders.iter().position(|&order| order >= at.harmonics);
+        self.level.order = enough.unwrap_or(self.orders.len() - 1);
+        self.level.samples = at.samples.unwrap_or(self.level.samples);
+    }
+
     /// Whether harmonics are chosen, for laws that are evaluated as they are.
     pub(super) fn only_harmonics_climb(&self) -> bool {
         self.settings.harmonics == HarmonicChoice::Auto

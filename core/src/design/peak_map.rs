@@ -4,10 +4,11 @@
 //! follows the whole curve by arclength with all the harmonics of its peak, a hundred of a bouncing damper, which
 //! a map of many cells cannot pay for. There resonances are located on an even grid with few harmonics. The
 //! highest ones are then solved on ever narrower grids with twice the harmonics each, until the peak stays the
-//! same; every point starts from the nearest one that is known, of fewer harmonics too. This follows one branch:
-//! jumps are not looked for.
+//! same; every point starts from the nearest one that is known, of fewer harmonics too. This follows one branch.
+//! Where the even grid jumps, or the points around a maximum lie on different branches, the search for a single
+//! peak is taken all the same.
 
-use super::peak::{climbed, PeakQuery, OF_STUDY};
+use super::peak::{are_torn, climbed, PeakQuery, OF_STUDY};
 use crate::balance::{
     keep, sweep, ForcedBalance, HarmonicChoice, Kept, Point, PointStatus, Progress, Settings,
 };
@@ -129,7 +130,9 @@ impl Search<'_> {
         if model.unbounded(span, self.progress)?[*dof].is_some() {
             return Ok(CellPeak::missing(0, PointStatus::Singular));
         }
-        let found = if model.is_monotone() { self.climbed(span) } else { self.located() };
+        let quest = PeakQuery { groups: vec![vec![*dof]], measure: Measure::HalfRange, span };
+        let located = if model.is_monotone() { None } else { self.located(&quest)? };
+        let found = located.map_or_else(|| self.climbed(&quest), Ok);
         // Of a search that was stopped what is found need not be the highest.
         if (self.progress)(0.0) {
             found
@@ -139,10 +142,9 @@ impl Search<'_> {
     }
 
     /// The peak by the search for a single one.
-    fn climbed(&self, span: (f64, f64)) -> Result<CellPeak, Error> {
-        let (model, settings, dof) = self.cell;
-        let quest = PeakQuery { groups: vec![vec![*dof]], measure: Measure::HalfRange, span };
-        let found = climbed(model, *settings, &quest, OF_STUDY, None, self.progress)?;
+    fn climbed(&self, quest: &PeakQuery) -> Result<CellPeak, Error> {
+        let (model, settings, _) = self.cell;
+        let found = climbed(model, *settings, quest, OF_STUDY, None, self.progress)?;
         Ok(found.summits.first().map_or(CellPeak::NOT_COMPUTED, |peak| CellPeak {
             omega: if peak.status.is_solved() { peak.omega } else { f64::NAN },
             amplitude: peak.amplitude,
@@ -151,32 +153,47 @@ impl Search<'_> {
         }))
     }
 
-    /// The highest peak by the even grid.
-    fn located(&self) -> Result<CellPeak, Error> {
+    /// The highest peak by the even grid; nothing if there are several branches.
+    fn located(&self, quest: &PeakQuery) -> Result<Option<CellPeak>, Error> {
         let coarse = sweep(self.balance(COARSE)?, self.grid)?.points;
+        if coarse.iter().any(|point| point.jump) {
+            return Ok(None);
+        }
         let highest = coarse.iter().map(|point| height(point)).fold(0.0, f64::max);
-        self.highest(&coarse, NEAR * highest)
+        self.highest(&coarse, NEAR * highest, quest)
     }
 
     /// The highest peak near the maxima of the even grid that reach so high.
-    fn highest(&self, points: &[Arc<Point>], least: f64) -> Result<CellPeak, Error> {
+    fn highest(
+        &self,
+        points: &[Arc<Point>],
+        least: f64,
+        quest: &PeakQuery,
+    ) -> Result<Option<CellPeak>, Error> {
         let heights: Vec<f64> = points.iter().map(|point| height(point)).collect();
         let at = |at: Option<usize>| at.and_then(|at| heights.get(at)).map_or(0.0, |h| h.max(0.0));
         let mut best = CellPeak::missing(COARSE, unsolved(points));
         for (top, (point, &own)) in points.iter().zip(&heights).enumerate() {
             let is_top = own >= at(top.checked_sub(1)) && own >= at(Some(top + 1));
             if is_top && own >= least && (self.progress)(0.0) {
-                let peak = self.refined(points, point.omega)?;
+                let Some(peak) = self.refined(points, point.omega, quest)? else {
+                    return Ok(None);
+                };
                 if best.amplitude.is_nan() || peak.amplitude > best.amplitude {
                     best = peak;
                 }
             }
         }
-        Ok(best)
+        Ok(Some(best))
     }
 
     /// The peak near a frequency.
-    fn refined(&self, coarse: &[Arc<Point>], mut centre: f64) -> Result<CellPeak, Error> {
+    fn refined(
+        &self,
+        coarse: &[Arc<Point>],
+        mut centre: f64,
+        quest: &PeakQuery,
+    ) -> Result<Option<CellPeak>, Error> {
         let (low, high) = (self.grid[0], self.grid[self.grid.len() - 1]);
         let Settings { tolerance, max_harmonics, .. } = self.cell.1;
         let (mut step, mut before) = (2.0 * (self.grid[1] - low), f64::NAN);
@@ -198,29 +215,38 @@ impl Search<'_> {
             }
             let heights: Vec<f64> = points.iter().map(|point| height(point)).collect();
             if heights.iter().all(|height| height.is_nan()) {
-                return Ok(CellPeak::missing(harmonics, unsolved(&points)));
+                return Ok(Some(CellPeak::missing(harmonics, unsolved(&points))));
             }
-            let (omega, amplitude) = vertex(&near, &heights);
+            let top = top(&heights);
+            let around = &points[top.saturating_sub(1)..(top + 2).min(points.len())];
+            let settings = self.settings(harmonics);
+            if are_torn(&self.cell.0, settings, quest, around, self.progress)? {
+                return Ok(None);
+            }
+            let (omega, amplitude) = vertex(&near, &heights, top);
             let solved = points.iter().filter(|point| point.is_solved());
             let error = solved.map(|point| point.error_estimate[0]).fold(0.0, f64::max);
             let [change, left] = SETTLED.map(|share| share * tolerance * amplitude);
             if (amplitude - before).abs() <= change && error <= left {
                 let status = PointStatus::Converged;
-                return Ok(CellPeak { omega, amplitude, harmonics, status });
+                return Ok(Some(CellPeak { omega, amplitude, harmonics, status }));
             }
             // A peak that has wandered off is followed before the grid narrows.
             step *= if near[0] < omega && omega < near[last] { 0.5 } else { 1.0 };
             (centre, before, known) = (omega, amplitude, points);
         }
         let status = PointStatus::HarmonicsLimit;
-        Ok(CellPeak { omega: centre, amplitude: before, harmonics, status })
+        Ok(Some(CellPeak { omega: centre, amplitude: before, harmonics, status }))
+    }
+
+    fn settings(&self, harmonics: usize) -> Settings {
+        Settings { harmonics: HarmonicChoice::Fixed(harmonics), ..self.cell.1 }
     }
 
     fn balance(&self, harmonics: usize) -> Result<ForcedBalance<'_>, Error> {
-        let (model, settings, dof) = self.cell;
-        let settings = Settings { harmonics: HarmonicChoice::Fixed(harmonics), ..*settings };
+        let (model, _, dof) = self.cell;
         let observe = std::slice::from_ref(dof);
-        Ok(ForcedBalance::new(model, settings, observe)?.watched(self.progress))
+        Ok(ForcedBalance::new(model, self.settings(harmonics), observe)?.watched(self.progress))
     }
 }
 
@@ -241,10 +267,14 @@ fn height(point: &Point) -> f64 {
     amplitude(&table, &series, Measure::HalfRange)
 }
 
-/// The top of the parabola through the highest point and its neighbours, or that point.
-fn vertex(omega: &[f64], heights: &[f64]) -> (f64, f64) {
+/// Where the highest point is.
+fn top(heights: &[f64]) -> usize {
     let order = |&a: &usize, &b: &usize| heights[a].total_cmp(&heights[b]);
-    let top = (0..heights.len()).filter(|&at| !heights[at].is_nan()).max_by(order).unwrap_or(0);
+    (0..heights.len()).filter(|&at| !heights[at].is_nan()).max_by(order).unwrap_or(0)
+}
+
+/// The top of the parabola through the highest point and its neighbours, or that point.
+fn vertex(omega: &[f64], heights: &[f64], top: usize) -> (f64, f64) {
     let own = (omega[top], heights[top]);
     if top == 0 || top + 1 == heights.len() {
         return own;
@@ -261,7 +291,11 @@ fn vertex(omega: &[f64], heights: &[f64]) -> (f64, f64) {
 
 #[cfg(test)]
 mod tests {
-    use super::vertex;
+    use super::{top, vertex as through};
+
+    fn vertex(omega: &[f64], heights: &[f64]) -> (f64, f64) {
+        through(omega, heights, top(heights))
+    }
 
     #[test]
     fn the_vertex_of_a_parabola_is_found() {

@@ -51,7 +51,8 @@ def design_map(
     or laws are not monotone for other reasons, resonances are located on a coarse grid with seven
     harmonics; the highest ones are then solved on ever narrower grids with twice the harmonics
     each, until the peak stays the same within a quarter of the tolerance, and its error estimate is
-    below half of it: jumps between motions are not looked for.
+    below half of it. Where the response jumps on the way the peak is found as that of a damper
+    curve, too.
 
     Parameters
     ----------

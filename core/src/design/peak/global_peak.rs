@@ -6,7 +6,7 @@ use super::samples::Sample;
 use super::search::{Found, Search};
 use super::upper_branch::{nearer, upper_branch};
 use crate::balance::{
-    Evaluation, ForcedBalance, HarmonicChoice, PointStatus, Progress, Resolution, Settings,
+    Evaluation, ForcedBalance, HarmonicChoice, Point, PointStatus, Progress, Resolution, Settings,
     WarmStart,
 };
 use crate::fourier::Measure;
@@ -37,6 +37,19 @@ pub struct PeakQuery {
     pub measure: Measure,
     /// Range of frequencies [rad/s].
     pub span: (f64, f64),
+}
+
+impl PeakQuery {
+    /// What is looked for, to a precision.
+    pub(super) fn aim(&self, precision: Precision) -> Aim {
+        Aim {
+            groups: self.groups.clone(),
+            measure: self.measure,
+            span: self.span,
+            precision,
+            most_points: MOST_POINTS,
+        }
+    }
 }
 
 /// The highest point of a group.
@@ -220,7 +233,7 @@ impl<'a> PeakSearch<'a> {
                     Ok(top) => {
                         let best = &found.samples[top.sample];
                         let (status, kept, error_estimate) =
-                            self.judge(model, all[top.curve], best.at, Some(best))?;
+                            self.judge(model, all[top.curve], best.at, Some((best, resolution)))?;
                         let summit = if status.is_solved() {
                             wanted = wanted.or_finer(kept);
                             GlobalPeak {
@@ -258,8 +271,12 @@ impl<'a> PeakSearch<'a> {
         if model.is_monotone() || (found.settled && !found.torn) {
             return Ok(Some(found));
         }
-        let largest =
-            upper_branch(model, self.settings.at(resolution), &self.aim(), self.progress)?;
+        let largest = upper_branch(
+            model,
+            self.settings.at(resolution),
+            &self.quest.aim(self.precision),
+            self.progress,
+        )?;
         self.points += largest.points;
         self.memory.profile.add(&largest.profile);
         if largest.samples.len() < 2 {
@@ -271,17 +288,6 @@ impl<'a> PeakSearch<'a> {
 
     fn is_ended(&self) -> bool {
         !(self.progress)(self.share)
-    }
-
-    /// What is looked for.
-    fn aim(&self) -> Aim {
-        Aim {
-            groups: self.quest.groups.clone(),
-            measure: self.quest.measure,
-            span: self.quest.span,
-            precision: self.precision,
-            most_points: MOST_POINTS,
-        }
     }
 
     fn search_from(
@@ -296,7 +302,7 @@ impl<'a> PeakSearch<'a> {
             .watched(self.progress)
             .remembering(std::mem::take(&mut self.memory));
         balance.report(self.share);
-        let aim = self.aim();
+        let aim = self.quest.aim(self.precision);
         let table = balance.table(resolution.harmonics);
         let look = FirstLook::new(model, &aim, table.harmonics().orders(), seeds)?;
         let search = Search::new(settings.residual, &aim, look.narrowest(), &mut balance);
@@ -307,23 +313,43 @@ impl<'a> PeakSearch<'a> {
     }
 
     /// Solves at a summit as the settings ask; says how that ended, with what resolution, and what a
-    /// better one could change.
+    /// better one could change. Where laws are not monotone, fewer harmonics than those of the search
+    /// may have no motion like the one that it has found; then they begin with as many.
     fn judge(
         &mut self,
         model: &Model,
         dof: usize,
         omega: f64,
-        start: Option<&Sample>,
+        start: Option<(&Sample, Resolution)>,
     ) -> Result<(PointStatus, Resolution, f64), Error> {
+        let mut point = self.solved(model, dof, (omega, start.map(|(best, _)| best)), None)?;
+        if let Some((best, resolution)) = start.filter(|_| !model.is_monotone()) {
+            let fell = !point.is_solved() || !point.unknowns().is_some_and(|own| best.is_like(own));
+            if fell && point.status != PointStatus::NotComputed && self.settings.is_automatic() {
+                point = self.solved(model, dof, (omega, Some(best)), Some(resolution))?;
+            }
+        }
+        Ok((point.status, point.resolution(), point.error_estimate[0]))
+    }
+
+    fn solved(
+        &mut self,
+        model: &Model,
+        dof: usize,
+        (omega, start): (f64, Option<&Sample>),
+        least: Option<Resolution>,
+    ) -> Result<Point, Error> {
         let observe = [dof];
         let mut balance = ForcedBalance::new(model, self.settings, &observe)?
             .watched(self.progress)
             .remembering(std::mem::take(&mut self.memory));
+        if let Some(least) = least {
+            balance = balance.beginning_with(least);
+        }
         balance.report(self.share);
         let point = balance.solve(omega, start.map(|sample| &sample.unknowns));
         self.memory = balance.into_memory();
         self.points += 1;
-        let point = point?;
-        Ok((point.status, point.resolution(), point.error_estimate[0]))
+        point
     }
 }

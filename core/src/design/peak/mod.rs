@@ -15,3 +15,4 @@ pub(super) use global_peak::{climbed, PeakSearch, Reached, OF_CURVE, OF_LEAST, O
 pub use global_peak::{summits, GlobalPeak, PeakQuery, Summits};
 pub(super) use interpolant::Knot;
 pub(super) use samples::{predicted, Sample};
+pub(super) use upper_branch::are_torn;

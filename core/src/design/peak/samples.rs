@@ -3,6 +3,10 @@
 use super::interpolant::Knot;
 use super::overlay::Overlay;
 use crate::balance::Unknowns;
+use crate::solve::norm;
+
+/// By how much other harmonics may move a motion.
+const MOVED: f64 = 0.1;
 
 /// A solved point with its slopes.
 #[derive(Debug, Clone)]
@@ -24,6 +28,13 @@ impl Sample {
     /// Whether no point slips.
     pub(super) fn sticks(&self) -> bool {
         !self.slips.contains(&true)
+    }
+
+    /// Whether a motion of other harmonics is this one, as far as those may move it.
+    pub(super) fn is_like(&self, other: &Unknowns) -> bool {
+        let (own, other) = (self.unknowns.values(), other.recast(self.unknowns.harmonics()));
+        let apart: Vec<f64> = own.iter().zip(&other).map(|(a, b)| a - b).collect();
+        norm(&apart) <= MOVED * norm(own)
     }
 
     /// Heights with their slopes, and those that they would be if the harmonics fell on each other.

@@ -7,13 +7,15 @@
 //! doubt.
 
 use super::first_look::Aim;
+use super::global_peak::{PeakQuery, OF_STUDY};
 use super::samples::Sample;
 use super::search::{Doubt, Found, Search};
-use crate::balance::{sweep_range, ForcedBalance, PointStatus, Progress, Settings};
+use crate::balance::{sweep_range, ForcedBalance, Point, PointStatus, Progress, Settings};
 use crate::model::Model;
 use crate::solve::norm;
 use crate::timing::Profile;
 use crate::Error;
+use std::sync::Arc;
 
 /// Largest distance of two neighbours from the line with the mean of their slopes, relative to the larger.
 const TORN: f64 = 0.25;
@@ -36,29 +38,63 @@ fn are_joined(a: &Sample, b: &Sample) -> bool {
 }
 
 impl Search<'_, '_> {
-    /// Whether some neighbours are on different branches: shorter intervals do not join them.
+    /// Whether some neighbours are on different branches.
     ///
     /// # Errors
     /// As for a solution at one frequency.
     pub(super) fn is_torn(&mut self) -> Result<bool, Error> {
         for right in 1..self.envelope.samples.len() {
-            let [mut a, mut b] = [right - 1, right].map(|i| self.envelope.samples[i].clone());
-            let mut halvings = 0;
-            while !are_joined(&a, &b) {
-                let wide = b.at - a.at > WITHIN * self.narrowest * b.at;
-                let most = HALVINGS[usize::from(wide)];
-                let middle = if halvings < most { self.between(&a, &b)? } else { None };
-                let Some(middle) = middle else { return Ok(true) };
-                if are_joined(&a, &middle) {
-                    a = middle;
-                } else {
-                    b = middle;
-                }
-                halvings += 1;
+            let pair = [right - 1, right].map(|i| self.envelope.samples[i].clone());
+            if self.are_apart(pair)? {
+                return Ok(true);
             }
         }
         Ok(false)
     }
+
+    /// Whether two samples are on different branches: shorter intervals do not join them.
+    fn are_apart(&mut self, [mut a, mut b]: [Sample; 2]) -> Result<bool, Error> {
+        let mut halvings = 0;
+        while !are_joined(&a, &b) {
+            let wide = b.at - a.at > WITHIN * self.narrowest * b.at;
+            let most = HALVINGS[usize::from(wide)];
+            let middle = if halvings < most { self.between(&a, &b)? } else { None };
+            let Some(middle) = middle else { return Ok(true) };
+            if are_joined(&a, &middle) {
+                a = middle;
+            } else {
+                b = middle;
+            }
+            halvings += 1;
+        }
+        Ok(false)
+    }
+}
+
+/// Whether some neighbours among points of one resolution are on different branches, or not solved.
+///
+/// # Errors
+/// As for a solution at one frequency.
+pub(crate) fn are_torn(
+    model: &Model,
+    settings: Settings,
+    quest: &PeakQuery,
+    points: &[Arc<Point>],
+    progress: &Progress<'_>,
+) -> Result<bool, Error> {
+    let mut balance = ForcedBalance::new(model, settings, &[])?.watched(progress);
+    let aim = quest.aim(OF_STUDY);
+    let mut search = Search::new(settings.residual, &aim, f64::INFINITY, &mut balance);
+    let mut last: Option<Sample> = None;
+    for point in points {
+        let Some(next) = search.sampled(point)? else { return Ok(true) };
+        if let Some(last) = last.replace(next.clone()) {
+            if search.are_apart([last, next])? {
+                return Ok(true);
+            }
+        }
+    }
+    Ok(false)
 }
 
 /// The largest motions of a curve.
