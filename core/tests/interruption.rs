@@ -10,10 +10,12 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::Arc;
 use stickslip_core::balance::{
     sweep, sweep_range, Evaluation, ForcedBalance, Kept, Point, PointStatus, Progress,
-    SampleChoice, Settings, Solution,
+    SampleChoice, Settings, Solution, Uniqueness,
 };
-use stickslip_core::contact::{BoucWen, ContactLaw, Cubic, Jenkins};
-use stickslip_core::model::{Contact, Model};
+use stickslip_core::contact::{BoucWen, Closure, ContactLaw, Coulomb, Cubic, Jenkins};
+use stickslip_core::design::{bounded_peak_curve, Target};
+use stickslip_core::fourier::Measure;
+use stickslip_core::model::{Contact, Model, Variation};
 use stickslip_core::orbit::decide_stability;
 use stickslip_core::structure::{HarmonicLoad, Structure};
 
@@ -114,5 +116,45 @@ fn stability_that_was_not_asked_for_in_time_is_not_decided() {
                 assert!(own.stable.is_none() || own.stable == all.stable);
             }
         });
+    });
+}
+
+/// Two masses that rub on planes: the traction that one keeps shifts the load of the other.
+fn rubbing() -> Model {
+    let pad = |rows: [[f64; 3]; 2], preload: f64| Contact {
+        law: Box::new(Coulomb::new(1, 0.5, 150.0, Some(200.0), Closure::Preload(preload)).unwrap()),
+        rows: Mat::from_fn(2, 3, |i, j| rows[i][j]),
+    };
+    let structure = Structure::new(
+        Mat::<f64>::identity(3, 3).as_ref(),
+        (faer::Scale(0.25) * Mat::<f64>::identity(3, 3)).as_ref(),
+        mat![[200.0, -60.0, 30.0], [-60.0, 180.0, -40.0], [30.0, -40.0, 220.0]].as_ref(),
+    );
+    let contacts = vec![
+        pad([[1.0, 0.0, 0.0], [0.0, 0.6, 0.8]], 2.0),
+        pad([[0.0, 1.0, 0.2], [0.3, 0.0, 1.0]], 3.0),
+    ];
+    let amplitude = vec![c64::new(2.0, 0.0), c64::new(0.5, 0.3), c64::new(1.0, 0.0)];
+    let load = HarmonicLoad { harmonic: 1, amplitude };
+    Model::new(structure.unwrap(), contacts, vec![load]).unwrap()
+}
+
+/// A bound that was ended in the middle of its search is not the bound.
+#[test]
+fn bounds_of_peaks_that_are_ended_are_none() {
+    let model = rubbing();
+    let target = Target { dof: 0, measure: Measure::HalfRange, span: (8.0, 22.0) };
+    let settings = Settings { tolerance: 1e-2, ..fixed(3) };
+    let work = |look: &Progress<'_>| {
+        let asked = (&[1.0][..], false);
+        let by = Variation::Level;
+        bounded_peak_curve(&model, settings, &by, asked, &target, look, None).unwrap()
+    };
+    let whole = work(&|_| true).peaks[0];
+    assert_ne!(whole.bounds.unwrap().unique, Uniqueness::Unique);
+    ended_anywhere(work, 40, |found| {
+        let peak = found.peaks[0];
+        let none = peak.status == PointStatus::NotComputed;
+        assert!(found.interrupted == none && (none || peak.bounds == whole.bounds), "{peak:?}");
     });
 }

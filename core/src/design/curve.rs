@@ -228,6 +228,11 @@ impl<'a> Follower<'a> {
         }
         self.resolution = Some(wanted);
         let bounds = self.bounds_of(&member, (summit.amplitude, sample), resolution)?;
+        // Of a search that was stopped the bounds need not be those of the peak.
+        self.interrupted = self.bounds == Some(false) && !(self.climb.progress)(share);
+        if self.interrupted {
+            return Ok(Peak::missing(value, PointStatus::NotComputed));
+        }
         Ok(Peak {
             value,
             omega: summit.omega,
