@@ -10,16 +10,14 @@ use crate::balance::evaluation::Evaluated;
 use crate::contact::{Motion, SlipLoad};
 use crate::fourier::{Harmonics, SampleTable};
 use crate::model::FlutterModel;
-use crate::solve::{across, norm, System as _};
+use crate::solve::{across, newton, norm, NewtonSettings, Outcome, System};
 use crate::structure::StuckMode;
 use faer::linalg::solvers::Solve as _;
 use faer::{c64, Mat};
 use std::sync::Arc;
 
-/// Newton iterations for the equilibrium.
-const ITERATIONS: usize = 60;
-/// Change of the equilibrium, relative to it, that ends them.
-const AT_REST: f64 = 1e-12;
+/// Newton's method for the equilibrium.
+const AT_REST: NewtonSettings = NewtonSettings { tolerance: 1e-12, max_iterations: 60 };
 /// Harmonics of the motions by which the contacts are asked when they leave their state.
 const HARMONICS: usize = 7;
 /// Deviation from the linear force, relative to it, that counts.
@@ -43,9 +41,50 @@ pub(super) struct Equilibrium {
     softening: Mat<f64>,
 }
 
+/// The equations of the mean displacements alone.
+struct Means<'a> {
+    equations: Condensed<'a>,
+    slots: usize,
+    slopes: Mat<f64>,
+}
+
+impl Means<'_> {
+    fn spread(&self, means: &[f64]) -> Vec<f64> {
+        let mut u = vec![0.0; means.len() * self.slots];
+        u.iter_mut().step_by(self.slots).zip(means).for_each(|(u, mean)| *u = *mean);
+        u
+    }
+}
+
+impl System for Means<'_> {
+    fn size(&self) -> usize {
+        self.slopes.nrows()
+    }
+
+    fn residual(&mut self, x: &[f64], out: &mut [f64]) {
+        self.value(x, out);
+        let (whole, slots) = (self.equations.assemble_all(), self.slots);
+        self.slopes = Mat::from_fn(x.len(), x.len(), |i, j| whole[(i * slots, j * slots)]);
+    }
+
+    fn value(&mut self, x: &[f64], out: &mut [f64]) {
+        let u = self.spread(x);
+        let mut left = vec![0.0; u.len()];
+        self.equations.residual(&u, &mut left);
+        out.iter_mut().zip(left.iter().step_by(self.slots)).for_each(|(out, left)| *out = *left);
+    }
+
+    fn solve(&mut self, rhs: &[f64], step: &mut [f64]) -> bool {
+        let mut solved = Mat::from_fn(rhs.len(), 1, |i, _| rhs[i]);
+        self.slopes.partial_piv_lu().solve_in_place(&mut solved);
+        step.iter_mut().enumerate().for_each(|(i, step)| *step = solved[(i, 0)]);
+        norm(step).is_finite()
+    }
+}
+
 impl Equilibrium {
     /// The state at rest at a value of what is followed, by Newton's method from where the contacts
-    /// begin; nothing if there is no equilibrium.
+    /// begin; nothing if it finds no equilibrium.
     pub(super) fn new(family: &FlutterModel<'_>, value: f64, omega: f64) -> Option<Self> {
         let table = SampleTable::new(Harmonics::new(1, false));
         let (slots, slot) = (table.harmonics().slots(), table.harmonics().slot(1)?);
@@ -55,24 +94,12 @@ impl Equilibrium {
         let points = displacement.len();
         let mut equations = Condensed::new(Evaluated::Made(model), &table, family.residual(), true);
         equations.set_omega(omega).ok()?;
-        let mut left = vec![0.0; points * slots];
-        for _ in 0..ITERATIONS {
-            let mut u = vec![0.0; points * slots];
-            u.iter_mut().step_by(slots).zip(&displacement).for_each(|(u, x)| *u = *x);
-            equations.residual(&u, &mut left);
-            let whole = equations.assemble_all();
-            let matrix = Mat::from_fn(points, points, |i, j| whole[(i * slots, j * slots)]);
-            let mut step = Mat::from_fn(points, 1, |i, _| -left[i * slots]);
-            matrix.partial_piv_lu().solve_in_place(&mut step);
-            let step: Vec<f64> = (0..points).map(|i| step[(i, 0)]).collect();
-            if !norm(&step).is_finite() {
-                return None;
-            }
-            displacement.iter_mut().zip(&step).for_each(|(x, step)| *x += step);
-            if norm(&step) <= AT_REST * norm(&displacement) {
-                break;
-            }
+        let mut means = Means { equations, slots, slopes: Mat::zeros(points, points) };
+        if newton(&mut means, &mut displacement, AT_REST).outcome != Outcome::Converged {
+            return None;
         }
+        means.value(&displacement, &mut vec![0.0; points]);
+        let equations = means.equations;
         let mut softening = Mat::zeros(points, points);
         for (load, own) in equations.loads.iter().zip(equations.model.points()) {
             let size = own.len() * slots;
