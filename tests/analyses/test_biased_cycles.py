@@ -153,3 +153,27 @@ def test_parameters_are_not_followed_under_static_loads():
             slip_force=(1.0, 10.0),
             contacts=[1],
         )
+
+
+def test_rest_is_found_where_full_steps_go_around():
+    """Between the states of four contacts; the last iterate was taken for the equilibrium."""
+    pads = [
+        ss.Coulomb(
+            ["x", "z"],
+            normal=normal,
+            friction=1.9986464,
+            tangential_stiffness=369761.179,
+            normal_stiffness=24640.8519,
+            **state,
+        )
+        for normal, state in (
+            ([0.8592458, 0.5115629], {"gap": -0.001169589385}),
+            ([-0.9732499, 0.2297491], {"preload": 5.91884962}),
+            ([-0.5230762, -0.8522859], {"gap": -0.000468674043}),
+            ([-0.2459112, -0.9692923], {"gap": 0.001241391694}),
+        )
+    ]
+    loads = [ss.Force("z", -146.0498, harmonic=0), ss.Force("x", -209.2074, harmonic=0)]
+    model = ss.Model(held([]).structure, pads, loads)
+    found = ss.limit_cycles(model, NEGATIVE, ratio=[1e5], stability=False, harmonics=1)
+    assert found.limit.ratio > 0.5  # where the damping of the stuck mode vanishes

@@ -54,6 +54,23 @@ impl Means<'_> {
         u.iter_mut().step_by(self.slots).zip(means).for_each(|(u, mean)| *u = *mean);
         u
     }
+
+    /// Takes full steps to the solution; whether they lead there: they may go around between states of
+    /// the contacts.
+    fn settle(&mut self, x: &mut [f64]) -> bool {
+        let (mut left, mut step) = (vec![0.0; x.len()], vec![0.0; x.len()]);
+        for _ in 0..AT_REST.max_iterations {
+            self.residual(x, &mut left);
+            if !self.solve(&left, &mut step) {
+                return false;
+            }
+            x.iter_mut().zip(&step).for_each(|(x, step)| *x -= step);
+            if norm(&step) <= AT_REST.tolerance * norm(x) {
+                return true;
+            }
+        }
+        false
+    }
 }
 
 impl System for Means<'_> {
@@ -84,7 +101,7 @@ impl System for Means<'_> {
 
 impl Equilibrium {
     /// The state at rest at a value of what is followed, by Newton's method from where the contacts
-    /// begin; nothing if it finds no equilibrium.
+    /// begin, damped if need be; nothing if it finds no equilibrium.
     pub(super) fn new(family: &FlutterModel<'_>, value: f64, omega: f64) -> Option<Self> {
         let table = SampleTable::new(Harmonics::new(1, false));
         let (slots, slot) = (table.harmonics().slots(), table.harmonics().slot(1)?);
@@ -95,8 +112,13 @@ impl Equilibrium {
         let mut equations = Condensed::new(Evaluated::Made(model), &table, family.residual(), true);
         equations.set_omega(omega).ok()?;
         let mut means = Means { equations, slots, slopes: Mat::zeros(points, points) };
-        if newton(&mut means, &mut displacement, AT_REST).outcome != Outcome::Converged {
-            return None;
+        let begun = displacement.clone();
+        if !means.settle(&mut displacement) {
+            displacement = begun;
+            let damped = newton(&mut means, &mut displacement, AT_REST);
+            if damped.outcome != Outcome::Converged {
+                return None;
+            }
         }
         means.value(&displacement, &mut vec![0.0; points]);
         let equations = means.equations;
