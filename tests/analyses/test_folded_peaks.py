@@ -124,3 +124,18 @@ def test_peaks_of_a_map_are_reached_by_a_motion(points):
         assert found.status[row][0] == "converged"
         highest = np.nanmax(curve.amplitude("x"))
         assert found.amplitude[row, 0] == pytest.approx(highest, rel=1e-2)
+
+
+def test_the_point_beside_a_peak_is_near_in_frequency() -> None:
+    modes = ss.Structure(
+        np.eye(3),
+        np.diag([500.0**2, 800.0**2, 1.0]),
+        ss.ModalDamping([0.0, 2e-3, 2e-2]),
+        list("cab"),
+    )
+    forces = [ss.Force("c", 1.0), ss.Force("a", 1.0)]
+    frf = ss.forced_response(ss.Model(modes, [], forces), np.linspace(300.0, 1000.0, 21), 1)
+    for dof in ("c", "a"):
+        near = np.abs(frf.omega - frf.peak(dof).omega).argmin()
+        assert frf.peak_index(dof) == near
+    assert [row.amplitude for row in frf.summary(["b"])] == [0.0]

@@ -97,8 +97,6 @@ def test_jumps_whose_end_is_far_along_the_curve_are_told():
     assert sweep.omega[jump - 1] <= last <= sweep.omega[jump]
     assert [one.code for one in sweep.diagnostics].count("jump") == 1
     assert sweep.peak("x").amplitude <= curve.peak("x").amplitude
-    # Points before the jump say nothing of those behind it.
-    assert sweep.iterations[jump + 1 :].max() < sweep.iterations[:jump].max()
 
 
 def state_of(frf, index):

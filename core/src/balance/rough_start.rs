@@ -30,6 +30,8 @@ const MOST_TRIES: usize = 2;
 const ASIDE: [f64; 6] = [0.02, -0.02, 0.08, -0.08, 0.3, -0.3];
 /// … and the longest and the shortest step back.
 const STEPS: [f64; 2] = [1e-2, 1e-4];
+/// Points on such ways that are solved at most.
+const MOST_ASIDE: usize = 400;
 
 impl ForcedBalance<'_> {
     /// Fewer harmonics, where they cost a small part only and leave out no load.
@@ -141,12 +143,17 @@ impl ForcedBalance<'_> {
         at: Resolution,
         omega: f64,
     ) -> Result<Option<Point>, Error> {
+        let mut solves = 0;
         for share in ASIDE {
             let mut here = (1.0 + share) * omega;
             let mut step = share.clamp(-STEPS[0], STEPS[0]) * omega;
             let mut start = self.found_by_newton(at, here, None)?;
             while let Some(known) = start.as_ref().filter(|_| here != omega) {
-                if step.abs() < STEPS[1] * omega || self.is_spent() || self.is_ended() {
+                solves += 1;
+                if solves > MOST_ASIDE || self.is_spent() || self.is_ended() {
+                    return Ok(None);
+                }
+                if step.abs() < STEPS[1] * omega {
                     start = None;
                     break;
                 }

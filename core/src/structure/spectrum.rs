@@ -31,6 +31,10 @@ impl Spectrum {
                 if denominator.norm() < floors[j] * squared {
                     denominator = c64::new(0.0, floors[j] * squared);
                 }
+                if denominator == c64::new(0.0, 0.0) {
+                    // Neither a load nor a contact moves such a mode: others are refused before.
+                    return (denominator, denominator);
+                }
                 let weight = denominator.inv();
                 let slope = weight * weight * c64::new(2.0 * omega, -damping[j]);
                 (weight, slope)

@@ -90,6 +90,8 @@ def _wave_damping(model: Model) -> Diagnostic | None:
     except np.linalg.LinAlgError:  # a degree of freedom without mass
         return None
     mode = int(np.argmax(squared > _RIGID_BODY * squared[-1]))
+    if not squared[mode] > 0.0:
+        return None
     omega, shape = float(np.sqrt(squared[mode])), shapes[:, mode]
     ratio = float((shape.conj() @ damping @ shape).real) / (2.0 * omega)
     if isinstance(law, ModalDamping):

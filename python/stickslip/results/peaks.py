@@ -320,12 +320,18 @@ def _row(result: Peaks, dof: str, peak: Peak) -> Summary:
 
 
 def _nearest(result: Peaks, dof: str, peak: Peak) -> int:
-    """Return the position of the solved point next to a peak in frequency and in amplitude."""
-    amplitude = result.amplitude(dof)
-    top = peak.amplitude if np.isfinite(peak.amplitude) else np.nanmax(amplitude)
-    width = max(float(np.ptp(result.omega)), float(np.spacing(peak.omega)))
-    distance = np.hypot((result.omega - peak.omega) / width, amplitude / top - 1.0)
-    return int(np.nanargmin(distance))
+    """Return the position of the solved point beside a peak, on its branch of a folded curve."""
+    solved = np.flatnonzero(result.arrays.solved)
+    omega = result.omega[solved]
+    near = int(np.abs(omega - peak.omega).argmin())
+    steps = np.diff(omega)
+    if np.isfinite(peak.amplitude) and (steps > 0.0).any() and (steps < 0.0).any():
+        # Of the points about its frequency, on every branch, that with the nearest amplitude.
+        ahead = (omega[:-1] - peak.omega) * (omega[1:] - peak.omega) <= 0.0
+        about = np.union1d(np.flatnonzero(np.append(ahead, False) | np.append(False, ahead)), near)
+        heights = result.amplitude(dof)[solved][about]
+        near = int(about[np.abs(heights - peak.amplitude).argmin()])
+    return int(solved[near])
 
 
 def _curve(result: Peaks, dof: str, measure: Measure) -> tuple[Float, Float, Bool]:

@@ -34,8 +34,8 @@ _NAMES = Field(
     description='Names of the parameters with their bounds: "pad.friction" of one contact; '
     '"friction" of all contacts that have it, "slip_force" of those that can slip; '
     '"damping.ratio", "damping.mass" and "damping.stiffness" of the damping law of the structure; '
-    '"level", a factor on all forces; "load", one on the static forces. Where the lower bound is '
-    "above 0 the logarithm is fitted.",
+    '"level", a factor on the forces that vary; "load", one on the static forces. Where the lower '
+    "bound is above 0 the logarithm is fitted.",
     examples=[{"pad.friction": [0.1, 1.0]}],
 )
 

@@ -42,7 +42,7 @@ class DamperView(View[DamperCurve]):
         """Say what was varied, and which peak was followed."""
         settings, values = result.settings, result.values
         low, high = settings.span
-        varied = ", ".join(settings.variation.names) or "all forces"
+        varied = ", ".join(settings.variation.names) or "the forces that vary"
         return [
             ("varied", f"{result.parameter} of {varied}"),
             ("values", f"{values.size} from {values.min():.6g} to {values.max():.6g}"),

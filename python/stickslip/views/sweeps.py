@@ -48,7 +48,7 @@ class SweepView(View[Sweep]):
     def about(self, result: Sweep) -> list[Row]:
         """Say what was varied."""
         variation = result.settings.variation
-        of = "" if variation is None else f" of {', '.join(variation.names) or 'all forces'}"
+        of = "" if variation is None else f" of {', '.join(variation.names) or 'the forces'}"
         varied = result.parameter.replace("_", " ")
         rows = [("varied", f"{varied}{of}"), ("values", ", ".join(result.written))]
         members = [_view(result).about(one) for one in result.results]

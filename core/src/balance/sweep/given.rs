@@ -107,15 +107,14 @@ pub(super) fn finish(
     }
 }
 
-/// What the last points that converged lead to, as far back as the sweep has jumped.
+/// What the last points that converged lead to.
 fn predict(points: &[Arc<Point>], omega: f64) -> Option<Unknowns> {
     let usable = |point: &&Arc<Point>| point.is_solved();
     let last = points.last().filter(usable)?.unknowns.as_ref()?;
-    let recent = &points[points.len().saturating_sub(LOOK_BACK)..];
-    let landed = recent.iter().rposition(|point| point.jump).unwrap_or(0);
-    let known: Vec<(f64, Vec<f64>)> = recent[landed..]
+    let known: Vec<(f64, Vec<f64>)> = points
         .iter()
         .rev()
+        .take(LOOK_BACK)
         .take_while(usable)
         .map_while(|p| Some((p.omega, p.unknowns.as_ref()?.recast(&last.harmonics))))
         .collect();

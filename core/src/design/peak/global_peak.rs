@@ -13,6 +13,7 @@ use crate::fourier::Measure;
 use crate::model::Model;
 use crate::timing::Profile;
 use crate::Error;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// How many times the error that an interpolant should have is allowed for.
@@ -352,4 +353,30 @@ impl<'a> PeakSearch<'a> {
         self.points += 1;
         point
     }
+}
+
+/// Whether some neighbours among points of one resolution are on different branches, or not solved.
+///
+/// # Errors
+/// As for a solution at one frequency.
+pub(crate) fn are_torn(
+    model: &Model,
+    settings: Settings,
+    quest: &PeakQuery,
+    points: &[Arc<Point>],
+    progress: &Progress<'_>,
+) -> Result<bool, Error> {
+    let mut balance = ForcedBalance::new(model, settings, &[])?.watched(progress);
+    let aim = quest.aim(OF_STUDY);
+    let mut search = Search::new(settings.residual, &aim, f64::INFINITY, &mut balance);
+    let mut last: Option<Sample> = None;
+    for point in points {
+        let Some(next) = search.sampled(point)? else { return Ok(true) };
+        if let Some(last) = last.replace(next.clone()) {
+            if search.are_apart([last, next])? {
+                return Ok(true);
+            }
+        }
+    }
+    Ok(false)
 }

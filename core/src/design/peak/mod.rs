@@ -11,8 +11,9 @@ mod search;
 mod slip_onset;
 mod upper_branch;
 
-pub(super) use global_peak::{climbed, PeakSearch, Reached, OF_CURVE, OF_LEAST, OF_STUDY};
+pub(super) use global_peak::{
+    are_torn, climbed, PeakSearch, Reached, OF_CURVE, OF_LEAST, OF_STUDY,
+};
 pub use global_peak::{summits, GlobalPeak, PeakQuery, Summits};
 pub(super) use interpolant::Knot;
 pub(super) use samples::{predicted, Sample};
-pub(super) use upper_branch::are_torn;

@@ -7,15 +7,13 @@
 //! doubt.
 
 use super::first_look::Aim;
-use super::global_peak::{PeakQuery, OF_STUDY};
 use super::samples::Sample;
 use super::search::{Doubt, Found, Search};
-use crate::balance::{sweep_range, ForcedBalance, Point, PointStatus, Progress, Settings};
+use crate::balance::{sweep_range, ForcedBalance, PointStatus, Progress, Settings};
 use crate::model::Model;
 use crate::solve::norm;
 use crate::timing::Profile;
 use crate::Error;
-use std::sync::Arc;
 
 /// Largest distance of two neighbours from the line with the mean of their slopes, relative to the larger.
 const TORN: f64 = 0.25;
@@ -53,7 +51,7 @@ impl Search<'_, '_> {
     }
 
     /// Whether two samples are on different branches: shorter intervals do not join them.
-    fn are_apart(&mut self, [mut a, mut b]: [Sample; 2]) -> Result<bool, Error> {
+    pub(super) fn are_apart(&mut self, [mut a, mut b]: [Sample; 2]) -> Result<bool, Error> {
         let mut halvings = 0;
         while !are_joined(&a, &b) {
             let wide = b.at - a.at > WITHIN * self.narrowest * b.at;
@@ -69,32 +67,6 @@ impl Search<'_, '_> {
         }
         Ok(false)
     }
-}
-
-/// Whether some neighbours among points of one resolution are on different branches, or not solved.
-///
-/// # Errors
-/// As for a solution at one frequency.
-pub(crate) fn are_torn(
-    model: &Model,
-    settings: Settings,
-    quest: &PeakQuery,
-    points: &[Arc<Point>],
-    progress: &Progress<'_>,
-) -> Result<bool, Error> {
-    let mut balance = ForcedBalance::new(model, settings, &[])?.watched(progress);
-    let aim = quest.aim(OF_STUDY);
-    let mut search = Search::new(settings.residual, &aim, f64::INFINITY, &mut balance);
-    let mut last: Option<Sample> = None;
-    for point in points {
-        let Some(next) = search.sampled(point)? else { return Ok(true) };
-        if let Some(last) = last.replace(next.clone()) {
-            if search.are_apart([last, next])? {
-                return Ok(true);
-            }
-        }
-    }
-    Ok(false)
 }
 
 /// The largest motions of a curve.
