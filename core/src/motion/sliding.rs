@@ -251,7 +251,11 @@ impl Slide {
         for point in self.plane.points {
             let force = of(force, point);
             for last in [DEGREE - 2, DEGREE - 1, DEGREE] {
-                if last > first && force[last] != 0.0 && size > 0.0 && self.beginning != Beginning::Opening {
+                if last > first
+                    && force[last] != 0.0
+                    && size > 0.0
+                    && self.beginning != Beginning::Opening
+                {
                     let ratio = 10.0 * TRUNCATION * size / force[last].abs();
                     reach = reach.min(ratio.powf(1.0 / (last - first) as f64));
                 }
