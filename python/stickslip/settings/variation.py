@@ -77,7 +77,8 @@ class ParameterMode(Settings):
     @classmethod
     def _plain_factors(cls, data: object) -> object:
         """Refuse values with a unit where factors are meant."""
-        if not isinstance(data, Mapping) or data.get("common") != "factor":
+        common = data.get("common") if isinstance(data, Mapping) else None
+        if not isinstance(common, str) or common != "factor":
             return data
         return {key: _factors(one, key) if key in UNITS else one for key, one in data.items()}
 
