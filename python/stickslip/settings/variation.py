@@ -77,8 +77,10 @@ class ParameterMode(Settings):
     @classmethod
     def _plain_factors(cls, data: object) -> object:
         """Refuse values with a unit where factors are meant."""
-        common = data.get("common") if isinstance(data, Mapping) else None
-        if not isinstance(common, str) or common != "factor":
+        # What is no text is refused behind: arrays of SciPy refuse to be compared with one.
+        if not isinstance(data, Mapping) or not isinstance(data.get("common"), str):
+            return data
+        if data["common"] != "factor":
             return data
         return {key: _factors(one, key) if key in UNITS else one for key, one in data.items()}
 
