@@ -120,7 +120,10 @@ def test_observed_dofs(frf):
 
 def test_nearest_point(frf):
     assert frf.index(150.2) == 0
-    assert frf.index(1e6) == 59
+    assert frf.index(frf.omega[-1] * (1.0 + 1e-7)) == 59
+    for outside in (149.0, 260.0):
+        with pytest.raises(ss.ModelError, match=f"{outside:g} rad/s lies outside the computed 150"):
+            frf.index(outside)
     assert frf.omega[frf.index(201.0)] == pytest.approx(201.0, abs=0.85)
     with pytest.raises(ss.ModelError, match="omega: nan is not a finite number"):
         frf.index(np.nan)

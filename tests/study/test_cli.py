@@ -175,7 +175,7 @@ def test_plot_writes_a_picture(results, tmp_path, monkeypatch, options, name):
     ("options", "message"),
     [
         (["--dof", "tpi"], "unknown dof 'tpi'; did you mean 'tip'?"),
-        (["--waveform", "999"], "--waveform = '999' is 999 rad/s, outside the computed 150 to 250"),
+        (["--waveform", "999"], "--waveform = '999': 999 rad/s lies outside the computed 150 to"),
         (["--loop", "27 N"], "--loop = '27 N' is not a frequency [rad/s]"),
         (["--loop", "1_70"], "--loop = '1_70' has an unknown unit '_70'"),
         (["--loop", "\u0661\u0667\u0660"], "is not a frequency [rad/s]"),

@@ -246,7 +246,7 @@ def test_plot(files, arguments, name):
         (["run.nc", "--waveform", "200"], "--waveform: run holds a transient, which has no such"),
         (["run.nc", "curve.nc"], "transient and forced response do not go together"),
         (["exact.nc", "--events", "200", "--loop", "200"], "--loop and --events exclude each"),
-        (["exact.nc", "--events", "900"], "--events = '900' is 900 rad/s, outside the computed"),
+        (["exact.nc", "--events", "900"], "--events = '900': 900 rad/s lies outside the comp"),
         (["run.nc", "--dof", "tpi"], "unknown dof 'tpi'"),
     ],
 )

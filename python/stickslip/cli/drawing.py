@@ -105,10 +105,4 @@ def _index(result: ForcedResponse, text: str, option: str) -> int:
 
     bare = re.fullmatch("[-+.0-9eE]+", text)
     omega = quantity(f"{text} rad/s" if bare else text, "rad/s", option)
-    low, high = float(result.omega.min()), float(result.omega.max())
-    if not low * (1 - 1e-6) <= omega <= high * (1 + 1e-6):
-        raise ModelError(
-            f"{option} = {text!r} is {omega:.6g} rad/s, outside the computed {low:.6g} to "
-            f"{high:.6g} rad/s; choose a frequency in between"
-        )
-    return result.index(omega)
+    return result.nearest(omega, f"{option} = {text!r}:")

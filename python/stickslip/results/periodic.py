@@ -21,6 +21,9 @@ from stickslip.settings.balance import ForcedSettings
 from stickslip.settings.orbits import ExactSettings
 from stickslip.units import physical_number
 
+_DIGITS = 1e-6
+"""Share of a frequency by which one that is printed may lie outside those computed."""
+
 
 class PeriodicMotions(ColumnResult):
     """Periodic motions, one after the other."""
@@ -146,14 +149,30 @@ class Sweep(PeriodicMotions):
     def index(self, omega: float) -> int:
         """Return the position of the computed point nearest to a frequency.
 
-        Position; of several equally near points the first.
+        Position; of several equally near points the first. On a curve that folds the point beside
+        a peak is that of `peak_index`.
 
         Parameters
         ----------
         omega : float
-            Angular frequency [rad/s].
+            Angular frequency [rad/s], one of those that the points span.
+
+        Raises
+        ------
+        ModelError
+            If it is no number, or lies outside the computed frequencies.
         """
-        return int(np.abs(self.omega - physical_number(omega, "rad/s", "omega")).argmin())
+        return self.nearest(physical_number(omega, "rad/s", "omega"), "omega:")
+
+    def nearest(self, omega: float, entry: str) -> int:
+        """Return the same of a frequency [rad/s], which messages call the `entry`."""
+        low, high = float(self.omega.min()), float(self.omega.max())
+        if not low * (1.0 - _DIGITS) <= omega <= high * (1.0 + _DIGITS):
+            raise ModelError(
+                f"{entry} {omega:.6g} rad/s lies outside the computed {low:.6g} to {high:.6g} "
+                "rad/s; choose a frequency in between"
+            )
+        return int(np.abs(self.omega - omega).argmin())
 
     @cached_property
     def _amplitudes(self) -> dict[tuple[str, Measure], Float]:
