@@ -173,6 +173,23 @@ def test_a_sector_with_two_cuts_is_joined_to_the_next():
     assert sector.damping_law == chain.damping_law
 
 
+def test_digits_of_a_damping_matrix_are_no_skew_part():
+    stiffness = [[1.2e5, -1e5, 0.0], [-1e5, 2e5, -1e5], [0.0, -1e5, 1.2e5]]
+    damping = 1e-5 * np.array(stiffness)
+    damping[0, 1] *= 1.0 + 1e-12
+
+    def cut(matrix):
+        whole = ss.Structure(np.diag([0.5, 1.0, 0.5]), stiffness, matrix, ["left", "mid", "right"])
+        return ss.cyclic_sector(whole, {"right": "left"})
+
+    sector, interface = cut(damping)
+    np.testing.assert_array_equal(sector.damping, sector.damping.T)
+    assert interface.damping == pytest.approx(1e-5 * interface.stiffness)
+    damping[0, 1] *= 1.1
+    with pytest.raises(ss.ModelError, match="its damping is not symmetric; give the blocks"):
+        cut(damping)
+
+
 def test_engine_orders_that_make_one_wave_are_computed_others_need_the_assembly():
     forces = [ss.Force("tip", 20.313), ss.Force("tip", 8.0, harmonic=3)]
     one_wave = shrouded(sectors=8, engine_order=3, engine_orders={3: 1}).replaced(forces=forces)

@@ -23,7 +23,7 @@ from stickslip.errors import ModelError
 from stickslip.model.coupling import Coupling
 from stickslip.model.damping import ModalDamping, Rayleigh, makes_blocks
 from stickslip.model.matrix_units import MatrixUnits, Units
-from stickslip.model.structure import Structure
+from stickslip.model.structure import ASYMMETRY, Structure
 
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
@@ -195,27 +195,29 @@ def cyclic_sector(structure: Structure, boundary: Mapping[str, str]) -> tuple[St
     ------
     ModelError
         If the boundary is no mapping or empty, a degree of freedom is unknown, stands at both cuts,
-        or is named twice.
+        or is named twice; or if the damping is modal, which is not that of the disk, or skew.
     """
     left = _checked(structure, boundary)
     kept = [dof for dof in structure.dofs if dof not in left]
     own = np.array([[float(dof == name) for name in kept] for dof in structure.dofs])
     ahead = [left.get(dof) for dof in structure.dofs]
     following = np.array([[float(dof == name) for name in kept] for dof in ahead])
-    matrices = {name: getattr(structure, name) for name in MATRICES}
-    blocks = {
-        name: own.T @ matrix @ own + following.T @ matrix @ following
-        for name, matrix in matrices.items()
-    }
     if isinstance(structure.damping_law, ModalDamping):
         reason = (
             "structure: modal damping of a sector that is cut free is not that of the disk; give"
         )
         raise ModelError(f"{reason} ss.Rayleigh(...) or a matrix", study=f"{reason} rayleigh = ...")
     # The blocks of a skew part change sign across the cut, which one block per cut cannot say.
-    if np.abs(structure.damping - structure.damping.T).max() > 0.0:
+    damping = structure.damping
+    if np.abs(damping - damping.T).max() > ASYMMETRY * np.abs(damping).max():
         reason = "structure: its damping is not symmetric; give the blocks yourself,"
         raise ModelError(f"{reason} ss.Interface(...)", study=f"{reason} interface of [disk]")
+    symmetric = 0.5 * (damping + damping.T)
+    matrices = {"mass": structure.mass, "damping": symmetric, "stiffness": structure.stiffness}
+    blocks = {
+        name: own.T @ matrix @ own + following.T @ matrix @ following
+        for name, matrix in matrices.items()
+    }
     interface = Interface(**{name: own.T @ matrix @ following for name, matrix in matrices.items()})
     law = structure.damping_law if isinstance(structure.damping_law, Rayleigh) else None
     return Structure.of_law(**blocks, dofs=kept, law=law), interface

@@ -30,8 +30,8 @@ from stickslip.model.dofs import Dofs
 from stickslip.model.matrix_units import MatrixUnits, Units
 from stickslip.model.stability import ROUNDING, scaled_pivots, unstable_row
 
-# Printed matrices carry rounded digits; anything larger than this is a wrong matrix.
-_ASYMMETRY = 1e-8
+ASYMMETRY = 1e-8
+"""Asymmetry, over the largest entry, that rounded digits of printed matrices may leave."""
 _SHOWN = 6
 
 
@@ -259,7 +259,7 @@ def _symmetric(matrix: Matrix, entry: str, names: tuple[str, ...]) -> Matrix:
     with np.errstate(over="ignore"):
         difference = matrix - matrix.T
     np.abs(difference, out=difference)
-    if difference.max() > _ASYMMETRY * max(matrix.max(), -matrix.min()):
+    if difference.max() > ASYMMETRY * max(matrix.max(), -matrix.min()):
         row, column = np.unravel_index(difference.argmax(), difference.shape)
         triangular = not (np.tril(matrix, -1).any() and np.triu(matrix, 1).any())
         remedy = (
