@@ -338,3 +338,13 @@ def test_bad_measurements_are_refused(arguments, said):
 def test_too_few_numbers_are_refused():
     with pytest.raises(ss.ModelError, match="1 numbers for 2 parameters"):
         ss.fit(model(1.0), ss.Measurement([170.0], "tip", [1e-3]), parameters=BOUNDS)
+
+
+@pytest.mark.parametrize("levels", [1, 3])
+def test_a_parameter_that_moves_no_number_is_not_identifiable(levels):
+    """The damper sticks: its slip force changes nothing."""
+    own = ss.forced_response(model(0.01), OMEGA[:levels], harmonics=3).amplitude("tip")
+    test = ss.Measurement(OMEGA[:levels], "tip", own, model=model(0.01), relative_noise=0.02)
+    found = ss.fit(model(0.01), [test], parameters={"slip_force": (10.0, 1000.0)})
+    assert found.intervals["slip_force"] == pytest.approx((10.0, 1000.0))
+    assert not found.identifiable["slip_force"]

@@ -272,3 +272,10 @@ def test_a_missing_package_or_file_is_named(tmp_path, monkeypatch):
     (tmp_path / "a.vtu").write_text("<VTKFile")
     with pytest.raises(ss.ModelError, match=r"meshio: pip install 'stickslip\[fe\]'"):
         ss.read_mesh(tmp_path / "a.vtu")
+
+
+def test_solids_take_hexahedra_alone():
+    skfem = pytest.importorskip("skfem")
+    for mesh in (3, skfem.MeshTet()):
+        with pytest.raises(ss.ModelError, match=r"solid: mesh .* has no hexahedra; give a skfem.M"):
+            ss.Solid(mesh, young=210e9, poisson=0.3, density=7850.0)

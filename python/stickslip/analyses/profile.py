@@ -18,6 +18,8 @@ _WALK = 0.05
 """First step of a walk to an end, of the way from bound to bound."""
 _CLOSE = 1e-4
 """Last step of such a walk."""
+_NOTHING = 1e-150
+"""Square of a scaled derivative that is none; its inverse is a number still."""
 
 
 class Ends(NamedTuple):
@@ -35,7 +37,7 @@ def covariance(jacobian: Float, variance: float) -> Float:
     Directions that the data do not touch have a variance of 1 / rounding, beyond any bound.
     """
     values, vectors = np.linalg.eigh(jacobian.T @ jacobian)
-    least = max(values[-1], 1e-300) * 1e-15
+    least = max(values[-1], _NOTHING) * 1e-15
     found: Float = variance * (vectors / np.maximum(values, least)) @ vectors.T
     return found
 

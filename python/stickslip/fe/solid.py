@@ -11,7 +11,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.checks import optional_package, real_number, whole_number
+from stickslip.checks import brief, optional_package, real_number, whole_number
 from stickslip.errors import ModelError
 from stickslip.fe.sparse import CscArray
 from stickslip.fe.vtu import write_vtu
@@ -68,6 +68,10 @@ class Solid:
 
     def __post_init__(self) -> None:
         skfem = _skfem()
+        if not isinstance(self.mesh, skfem.MeshHex):
+            raise ModelError(
+                f"solid: mesh {brief(self.mesh)} has no hexahedra; give a skfem.MeshHex"
+            )
         for name, unit in (("young", "Pa"), ("density", "kg/m^3")):
             number = physical_number(getattr(self, name), unit, f"solid: {name}")
             if number <= 0.0:
