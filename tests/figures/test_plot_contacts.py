@@ -239,8 +239,8 @@ def test_titles_have_the_unit_that_is_asked_for(frf, ax, unit, symbol):
 
 
 def test_the_command_gives_titles_the_unit_of_its_axes(frf):
-    wanted = Wanted(dofs=["tip"], omega_unit="Hz", log=True, per_force=False, contact="0")
-    for picture, place in (("waveform", "f = "), ("loop", "jenkins at f = ")):
+    for picture, dofs, place in (("waveform", ["tip"], "f = "), ("loop", None, "jenkins at f = ")):
+        wanted = Wanted(dofs, omega_unit="Hz", log=True, per_force=False, contact=None)
         _, (panel,) = wanted.picture({picture: "31 Hz"}, [("beam", frf)])
         one = panel(ax=Figure().add_subplot())
         assert one.get_title().startswith(place)

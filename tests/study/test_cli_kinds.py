@@ -361,7 +361,7 @@ def test_pictures_name_the_results_they_show():
     half = len(titles) // 2
     assert all(title.startswith("level 0.3") for title in titles[:half])
     assert all(title.startswith("level 1") for title in titles[half:])
-    wanted = Wanted(dofs=["tip"], omega_unit="rad/s", log=True, per_force=False, contact="0")
+    wanted = Wanted(dofs=["tip"], omega_unit="rad/s", log=True, per_force=False, contact=None)
     named = [("first.nc", moved[0][1]), ("second.nc", moved[1][1])]
     _, panels = wanted.picture({}, named)
     assert {title.partition(":")[0] for title in drawn_titles(panels)} == {"first.nc", "second.nc"}

@@ -71,8 +71,9 @@ def plot(
     ] = None,
     loop: Annotated[str | None, _omega(help="Draw the hysteresis loop at this frequency.")] = None,
     contact: Annotated[
-        str, typer.Option(help="Contact of the loop: its position, counted from 0, or its name.")
-    ] = "0",
+        str | None,
+        typer.Option(help="Contact of the loop: its position from 0, or its name. Default: 0."),
+    ] = None,
     events: Annotated[
         str | None,
         _omega(help="Draw stick and slip over one period of an exact orbit."),

@@ -7,6 +7,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 
+from stickslip.checks import unknown
+from stickslip.disk.bladed_disk import rotor_order
 from stickslip.errors import ModelError
 from stickslip.model.notable import notable_dofs
 from stickslip.plot.style import OmegaUnit
@@ -17,6 +19,14 @@ from stickslip.study.tables import OutputTable
 from stickslip.views.kinds import view_of
 from stickslip.views.picture import Panel, titled
 
+_OPTIONS = {
+    "curve": ("--dof", "--linear", "--per-force"),
+    "": ("--dof",),
+    "waveform": ("--dof",),
+    "loop": ("--contact",),
+}
+"""What may be chosen of a picture; "" is that of a result that is no response curve."""
+
 
 @dataclass(frozen=True)
 class Wanted:
@@ -26,7 +36,7 @@ class Wanted:
     omega_unit: OmegaUnit
     log: bool
     per_force: bool
-    contact: str
+    contact: str | None
 
     def picture(
         self, asked: Mapping[str, str], results: Sequence[tuple[str, Result]]
@@ -41,6 +51,7 @@ class Wanted:
         if not asked:
             return self._default(results)
         ((picture, omega),) = asked.items()
+        self._check_options(picture, f"--{picture}")
         panels: list[Panel] = []
         for name, result in results:
             if not isinstance(result, ForcedResponse):
@@ -58,9 +69,15 @@ class Wanted:
         results = [result for _, result in named]
         view, dofs = view_of(results), self._dofs(results[0])
         curves = [result for result in results if isinstance(result, ForcedResponse)]
+        kind = results[0].kind.replace("_", " ")
+        self._check_options("curve" if curves else "", f"a {kind}")
         if not curves:
+            known = dict.fromkeys(dof for result in results for dof in result.dofs)
+            for dof in self.dofs or ():
+                if dof not in known:
+                    raise ModelError(f"--dof: {unknown('dof', dof, known)}")
             output = OutputTable(omega_unit=self.omega_unit)
-            return results[0].kind.replace("_", "-"), view.named_panels(named, dofs, output)
+            return kind.replace(" ", "-"), view.named_panels(named, dofs, output)
         drawn = partial(
             plot.curves,
             curves,
@@ -69,6 +86,18 @@ class Wanted:
             normalise="force" if self.per_force else None,
         )
         return "curve", [partial(drawn, dof=dof) for dof in dofs]
+
+    def _check_options(self, picture: str, name: str) -> None:
+        """Refuse options that change nothing of a picture."""
+        given = {
+            "--dof": bool(self.dofs),
+            "--linear": not self.log,
+            "--per-force": self.per_force,
+            "--contact": self.contact is not None,
+        }
+        for option in given:
+            if given[option] and option not in _OPTIONS.get(picture, ()):
+                raise ModelError(f"{option}: changes nothing of {name}; leave it out")
 
     def _dofs(self, result: Result) -> Sequence[str]:
         return self.dofs or notable_dofs(result.model, result.dofs)
@@ -79,13 +108,13 @@ class Wanted:
 
         unit = self.omega_unit
         if picture == "waveform":
-            index = _index(result, omega, "--waveform")
+            index = _index(result, omega, "--waveform", unit)
             for dof in self._dofs(result):
                 yield partial(plot.waveform, result, dof, index, omega_unit=unit)
         elif picture == "loop":
-            counted = re.fullmatch("[0-9]{1,9}", self.contact)
-            place = int(self.contact) if counted else self.contact
-            index = _index(result, omega, "--loop")
+            contact = self.contact or "0"
+            place = int(contact) if re.fullmatch("[0-9]{1,9}", contact) else contact
+            index = _index(result, omega, "--loop", unit)
             yield partial(plot.hysteresis, result, place, index, omega_unit=unit)
         elif not isinstance(result, ExactResponse):
             raise ModelError(
@@ -93,16 +122,21 @@ class Wanted:
                 "out"
             )
         elif picture == "events":
-            index = _index(result, omega, "--events")
+            index = _index(result, omega, "--events", unit)
             yield partial(plot.events, result, index, omega_unit=unit)
         else:
             yield partial(plot.multipliers, result, omega_unit=unit)
 
 
-def _index(result: ForcedResponse, text: str, option: str) -> int:
-    """Return the computed point nearest to a frequency, which must lie among them."""
-    from stickslip.units import quantity
+def _index(result: ForcedResponse, text: str, option: str, unit: OmegaUnit) -> int:
+    """Return the computed point nearest to a frequency, which must lie among them.
+
+    In a picture over rpm, which of a disk are those of the rotor, so is a frequency in rpm.
+    """
+    from stickslip.units import parted, quantity
 
     bare = re.fullmatch("[-+.0-9eE]+", text)
     omega = quantity(f"{text} rad/s" if bare else text, "rad/s", option)
+    if unit == "rpm" and not bare and parted(text)[1] == unit:
+        omega *= rotor_order(result.model) or 1.0
     return result.nearest(omega, f"{option} = {text!r}:")
