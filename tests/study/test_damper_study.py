@@ -99,3 +99,9 @@ def test_two_dampers_have_names_of_their_own():
 def test_refused(old, new, message):
     with pytest.raises(ss.ModelError, match=message):
         Study.parse(SECTOR.replace(old, new))
+
+
+def test_axes_are_those_of_the_sectors_of_a_disk():
+    lines = EXAMPLE.read_text().replace('kind = "wedge"', 'kind = "wedge"\naxes = "parallel"')
+    with pytest.raises(ss.ModelError, match="damper 1: axes = 'parallel' says how the sectors of"):
+        Study.parse(lines)

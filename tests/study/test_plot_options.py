@@ -42,7 +42,7 @@ def test_frequencies_in_rpm_are_of_the_rotor_as_the_axes_are():
     rotor = f"{220.0 / 4 * 30 / np.pi} rpm"
 
     def title(unit, omega):
-        wanted = Wanted(None, unit, log=True, per_force=False, contact=None)
+        wanted = Wanted(None, unit, log=True, per_force=False, contact="0")
         _, (panel,) = wanted.picture({"loop": omega}, [("disk", curve)])
         panel(ax=(ax := Figure().add_subplot()))
         return ax.get_title()

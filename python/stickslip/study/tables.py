@@ -73,7 +73,8 @@ class OutputTable(Table):
     )
     omega_unit: Annotated[Literal["rad/s", "Hz", "rpm"], ONE_OF] = Field(
         default="rad/s",
-        description="Unit of the frequency axis; rpm of a disk are those of the rotor.",
+        description="Unit of the frequency axis; rpm of a disk are those of the rotor. Figures "
+        "over the speed or the nodal diameter are in rpm and Hz.",
     )
     length_unit: Annotated[
         Literal["auto", "m", "mm", "um"], ONE_OF, BeforeValidator(_length_unit)
@@ -127,6 +128,13 @@ class StudyTables(Table):
             raise ModelError(
                 f"coupling {ends.index(None) + 1}: there are no sectors to couple; add the table "
                 "[disk], or name the 'other' DOF of the structure"
+            )
+        turned = ["axes" in damper.model_fields_set for damper in self.damper]
+        if self.disk is None and any(turned):
+            raise ModelError(
+                f"damper {turned.index(True) + 1}: axes = "
+                f"'{self.damper[turned.index(True)].axes}' says how the sectors of a disk stand; "
+                "add the table [disk], or leave it out"
             )
         tuned = self.disk is not None and self.disk.mistuning is None
         if self.analysis.kind == "flutter-map" and not tuned:
