@@ -139,3 +139,16 @@ def test_the_point_beside_a_peak_is_near_in_frequency() -> None:
         near = np.abs(frf.omega - frf.peak(dof).omega).argmin()
         assert frf.peak_index(dof) == near
     assert [row.amplitude for row in frf.summary(["b"])] == [0.0]
+
+
+def test_what_stands_still_has_a_summary() -> None:
+    pair = ss.Structure(
+        np.eye(2), np.diag([1e4, 2e4]), damping=ss.ModalDamping(0.01), dofs=["tip", "still"]
+    )
+    damper = ss.Jenkins("tip", stiffness=1e3, slip_force=1.0)
+    frf = ss.forced_response(
+        ss.Model(pair, [damper], [ss.Force("tip", 17.0)]), np.linspace(80.0, 200.0, 9), harmonics=3
+    )
+    (still,) = frf.summary("still")
+    assert (still.amplitude, still.error_estimate) == (0.0, 0.0)
+    assert frf.omega[frf.peak_index("still")] == still.omega
