@@ -26,7 +26,7 @@ from stickslip.errors import ModelError
 from stickslip.results.diagnostic import present
 from stickslip.results.flutter_map import STATES, FlutterArrays, FlutterMap
 from stickslip.results.nonlinear_modes import NonlinearModes
-from stickslip.settings.modes import FlutterKeys, FlutterModeSettings, FlutterSettings
+from stickslip.settings.flutter import FlutterKeys, FlutterModeSettings, FlutterSettings
 from stickslip.settings.settings import configured
 
 if TYPE_CHECKING:

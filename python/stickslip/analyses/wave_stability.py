@@ -24,7 +24,7 @@ from stickslip.disk.waves import AerodynamicWaves
 from stickslip.errors import ModelError
 from stickslip.results.limit_cycles import LimitCycles
 from stickslip.results.nonlinear_modes import NonlinearModes
-from stickslip.settings.modes import FlutterKeys
+from stickslip.settings.flutter import FlutterKeys
 
 _Asked: TypeAlias = tuple[int, bytes, int | None]
 """Nodal diameter, amplitudes and harmonics."""

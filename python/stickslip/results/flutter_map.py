@@ -13,7 +13,7 @@ from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
 from stickslip.results.fields import Columns, Complex, Float, Int, Shown, column
 from stickslip.results.result import ColumnResult
-from stickslip.settings.modes import FlutterSettings
+from stickslip.settings.flutter import FlutterSettings
 
 Fate: TypeAlias = Literal[
     "decays",

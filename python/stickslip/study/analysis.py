@@ -34,7 +34,8 @@ from stickslip.settings.balance import BalanceKeys
 from stickslip.settings.cycles import CycleKeys
 from stickslip.settings.entries import ByKey, Factor, Some, Table
 from stickslip.settings.fit import FitKeys
-from stickslip.settings.modes import FlutterKeys, ModeKeys
+from stickslip.settings.flutter import FlutterKeys
+from stickslip.settings.modes import ModeKeys
 from stickslip.settings.motion import BasinKeys, StaticKeys, TransientKeys
 from stickslip.settings.orbits import CertifySettings, OrbitKeys, SingleHarmonicKeys
 from stickslip.settings.peaks import DamperKeys, MistuningKeys, OptimumKeys
