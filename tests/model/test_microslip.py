@@ -110,6 +110,7 @@ NUMBERS = {"stiffness": 1.0, "slip_force": 1.0}
         (lambda: ss.Masing("x", backbone=([0.0], [0.0])), "no row beyond zero"),
         (lambda: ss.Masing("x", backbone=([1, np.nan], [2, 3])), "displacement.1.: nan"),
         (lambda: ss.BoucWen("x", **NUMBERS, exponent=0.5), "exponent 0.5 is below 1"),
+        (lambda: ss.BoucWen("x", **NUMBERS, exponent=1e8), r"exponent 1e\+08 is above 1000"),
         (lambda: ss.BoucWen("x", **NUMBERS, beta=0.2), "beta 0.2 is outside 0.5 to 1"),
     ],
 )

@@ -133,9 +133,7 @@ impl ForcedBalance<'_> {
         let harmonics = table.harmonics().clone();
         Ok(found.then_some(Unknowns { harmonics, values: x }))
     }
-}
 
-impl ForcedBalance<'_> {
     /// A point that Newton's method does not reach from the stuck response: from a frequency aside, which it
     /// does reach from there, and step by step back.
     pub(super) fn solve_from_aside(

@@ -14,6 +14,8 @@ use faer::Mat;
 
 /// Longest step in v of the fourth-order scheme, of which the knee of a large exponent is a short one.
 const STEP: f64 = 0.02;
+/// Largest exponent: the force of a larger one is that of a Jenkins element to a thousandth.
+const SHARPEST: f64 = 1e3;
 /// Distance from the limit at which the force stays there: closer to it rounding may stop the steps.
 const AT_LIMIT: f64 = 1e-14;
 /// Share of the stiffness that slip takes off where it has hardly begun.
@@ -36,7 +38,7 @@ impl BoucWen {
     /// A law of a stiffness at rest [N/m], a largest force \[N\], the exponent n and the share β.
     ///
     /// # Errors
-    /// A stiffness that is negative or infinite, a negative slip force, n below 1, β outside 0.5 to 1.
+    /// A stiffness that is negative or infinite, a negative slip force, n outside 1 to 1000, β outside 0.5 to 1.
     pub fn new(stiffness: f64, slip_force: f64, exponent: f64, beta: f64) -> Result<Self, Error> {
         let refused = |name: &str, value: f64, remedy: &str| {
             Err(Error::value(format!("bouc-wen: {name}"), value, remedy))
@@ -47,8 +49,9 @@ impl BoucWen {
         if slip_force.is_nan() || slip_force < 0.0 {
             return refused("slip_force", slip_force, "must not be negative");
         }
-        if !(exponent.is_finite() && exponent >= 1.0) {
-            return refused("exponent", exponent, "must be at least 1");
+        if !(1.0..=SHARPEST).contains(&exponent) {
+            let remedy = "must be from 1 to 1000: beyond, the law is a Jenkins element";
+            return refused("exponent", exponent, remedy);
         }
         if !(0.5..=1.0).contains(&beta) {
             let remedy = "must be from 0.5 to 1: below, the law gives work back in small loops";

@@ -155,9 +155,13 @@ impl Returns {
         for count in 1..=MOST {
             let fall = self.fall(count)?;
             let (last, rate) = (fall.last, fall.per_return * count as f64);
-            let ends = last <= ROUNDING && rate >= 0.0;
-            let left = if ends { 0.0 } else { last / -(-rate).exp_m1() };
-            if fall.most > self.tolerance || !(0.0..=self.tolerance).contains(&left) {
+            // What a motion is still away from its period: a geometric series of its closing errors.
+            let left = match rate {
+                rate if last <= ROUNDING && rate >= 0.0 => 0.0,
+                rate if rate > 0.0 => last / -(-rate).exp_m1(),
+                _ => f64::INFINITY,
+            };
+            if fall.most > self.tolerance || left > self.tolerance {
                 continue;
             }
             // A spiral towards one point passes close to itself every few returns; what tells it from

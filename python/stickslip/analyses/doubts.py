@@ -14,7 +14,7 @@ from stickslip.damper.damper import LEFT, RIGHT
 from stickslip.disk.bladed_disk import BladedDisk
 from stickslip.disk.mistuned import MistunedDisk
 from stickslip.model import Contact, Coulomb, Model
-from stickslip.model.damping import ModalDamping
+from stickslip.model.damping import ModalDamping, eigen_pencil
 from stickslip.results.arrays import Arrays
 from stickslip.results.diagnostic import Diagnostic
 from stickslip.results.status import Status
@@ -83,10 +83,8 @@ def _wave_damping(model: Model) -> Diagnostic | None:
         return None
     harmonic = min((force.harmonic for force in model.forces if force.harmonic), default=1)
     mass, damping, stiffness = model.matrices_at(harmonic)
-    from scipy.linalg import eigh
-
     try:
-        squared, shapes = eigh(stiffness, mass)
+        squared, shapes = eigen_pencil(stiffness, mass)
     except np.linalg.LinAlgError:  # a degree of freedom without mass
         return None
     mode = int(np.argmax(squared > _RIGID_BODY * squared[-1]))

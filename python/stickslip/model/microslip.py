@@ -23,6 +23,8 @@ _CONCAVE = 1e-9
 _REVERSALS = 12
 """Reversals that a state tells."""
 _SHAPES = ("exponential", "shear-layer")
+_SHARPEST = 1e3
+"""Largest exponent of a knee, within a thousandth of which a Jenkins element is."""
 
 
 @dataclass(frozen=True)
@@ -347,6 +349,8 @@ class BoucWen(_Microslip):
         self._keep_numbers("exponent", "beta")
         if self.exponent < 1.0:
             raise self._refusal("exponent", "is below 1; give 1 for the softest knee")
+        if self.exponent > _SHARPEST:
+            raise self._refusal("exponent", "is above 1000; such a knee is that of ss.Jenkins")
         if not 0.5 <= self.beta <= 1.0:
             raise self._refusal(
                 "beta", "is outside 0.5 to 1; below, small loops would give work back"

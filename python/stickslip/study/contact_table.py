@@ -201,7 +201,7 @@ class BoucWenTable(EndsTable):
     law: Literal["bouc-wen"] = Field(description="Friction law.")
     stiffness: StiffnessValue = Field(description="Stiffness at rest.")
     slip_force: SlipForce = Field(description="Force that it comes near.")
-    exponent: Number = Field(default=1.0, description="Sharpness n of the knee, at least 1.")
+    exponent: Number = Field(default=1.0, description="Sharpness n of the knee, from 1 to 1000.")
     beta: Number = Field(default=0.5, description="Share of the term with the direction, 0.5 to 1.")
 
 
