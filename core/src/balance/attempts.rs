@@ -39,14 +39,14 @@ impl ForcedBalance<'_> {
         if !failed || resolution.samples.is_some() || self.follows() || self.is_spent() {
             return Ok(solved);
         }
-        if matches!(solved.status, PointStatus::Stalled | PointStatus::Free) {
-            if let Some(point) = self.solve_from_aside(resolution, omega)? {
-                return Ok(point);
-            }
-        }
         let (found, by_fewer) = self.solve_by_fewer(resolution, omega)?;
         if let Some(point) = found {
             return Ok(point);
+        }
+        if matches!(solved.status, PointStatus::Stalled | PointStatus::Free) && !self.is_spent() {
+            if let Some(point) = self.solve_from_aside(resolution, omega)? {
+                return Ok(point);
+            }
         }
         // Where many harmonics fail of which fewer have a solution, a homotopy takes long and hardly leads on.
         let hopeless = by_fewer && !self.has_short_homotopies(resolution.harmonics);
