@@ -43,14 +43,16 @@ impl ForcedBalance<'_> {
         if let Some(point) = found {
             return Ok(point);
         }
-        if matches!(solved.status, PointStatus::Stalled | PointStatus::Free) && !self.is_spent() {
-            if let Some(point) = self.solve_from_aside(resolution, omega)? {
-                return Ok(point);
-            }
-        }
-        // Where many harmonics fail of which fewer have a solution, a homotopy takes long and hardly leads on.
+        // Where many harmonics fail of which fewer have a solution, a path takes long and hardly leads on.
         let hopeless = by_fewer && !self.has_short_homotopies(resolution.harmonics);
-        if solved.status != PointStatus::Stalled || hopeless || self.is_spent() {
+        let stuck = matches!(solved.status, PointStatus::Stalled | PointStatus::Free);
+        if !stuck || hopeless || self.is_spent() {
+            return Ok(solved);
+        }
+        if let Some(point) = self.solve_from_aside(resolution, omega)? {
+            return Ok(point);
+        }
+        if solved.status != PointStatus::Stalled || self.is_spent() {
             return Ok(solved);
         }
         // Samples blur the edges between states at which an exact law may hold Newton's method up.
