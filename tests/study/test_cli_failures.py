@@ -121,6 +121,7 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 import stickslip.study.analysis as tables
 from stickslip.cli import app
 whole = tables.forced_response
+sent = []
 def interrupted(model, *arguments, **options):
     if model.forces[0].amplitude < 10:
         return whole(model, *arguments, **options)
@@ -129,7 +130,9 @@ def interrupted(model, *arguments, **options):
         # The other level has a thread of its own.
         while not os.path.exists("results/beam-1.nc"):
             time.sleep(0.01)
-        if fraction > 0:
+        # A second signal, on a slow machine, would end the run at once.
+        if fraction > 0 and not sent:
+            sent.append(fraction)
             os.kill(os.getpid(), signal.SIGINT)
         told(fraction)
     return whole(model, *arguments, **(options | {"progress": interrupt}))
@@ -140,7 +143,8 @@ app(["run", "study.toml"])
     (folder / "study.toml").write_text('name = "beam"\n' + study_text(analysis))
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 130
-    first, *_, line = done.stderr.splitlines()
+    # A slow machine is told first how long it takes.
+    *_, first, line = done.stderr.splitlines()
     assert first == "interrupted: saving what was computed"
     assert line.startswith("interrupted: 1 of 2 curves complete in results, the next one as")
     assert sorted(file.name for file in (folder / "results").iterdir()) == [

@@ -324,9 +324,12 @@ from stickslip.cli.run import _panels
 from stickslip.reference import snecma_beam
 signal.signal(signal.SIGINT, signal.default_int_handler)
 whole = table.analysis
+sent = []
 def interrupted(*arguments, **options):
     def interrupt(fraction):
-        if fraction > 0:
+        # A second signal, on a slow machine, would end the run at once.
+        if fraction > 0 and not sent:
+            sent.append(fraction)
             os.kill(os.getpid(), signal.SIGINT)
     return whole(*arguments, **(options | {"progress": interrupt}))
 table.analysis = interrupted

@@ -161,9 +161,13 @@ from stickslip.study.analysis import MistuningStudyTable as table
 from stickslip.cli import app
 signal.signal(signal.SIGINT, signal.default_int_handler)
 whole = table.analysis
+sent = []
 def interrupted(*arguments, **options):
     def interrupt(fraction):
-        os.kill(os.getpid(), signal.SIGINT)
+        # A second signal, on a slow machine, would end the run at once.
+        if not sent:
+            sent.append(fraction)
+            os.kill(os.getpid(), signal.SIGINT)
     return whole(*arguments, **(options | {"progress": interrupt}))
 table.analysis = interrupted
 app(["run", "ring.toml"])
