@@ -62,6 +62,26 @@ def test_a_chain_of_joints_vibrates_as_its_integration_in_time_does():
         assert balance.amplitude(dof)[0] == pytest.approx(amplitude, rel=2e-5)
 
 
+@pytest.mark.parametrize("law", [iwan("a", slip_force=0.5), exponential("a")])
+@pytest.mark.parametrize("preload", [0.0, 0.1])
+def test_joints_beside_contacts_that_close_move_as_their_balance_does(law, preload):
+    pad = ss.Coulomb(
+        ["a", "b", "c"],
+        normal=[0, 0, 1],
+        friction=0.3,
+        tangential_stiffness=8e3,
+        normal_stiffness=8e3,
+        preload=preload,
+    )
+    forces = [ss.Force("b", 0.5, phase=1.0), ss.Force("c", 2.0, phase=2.0)]
+    own = ss.Model(structure(size=3), [law, pad], [ss.Force("a", 1.0), *forces])
+    exact = ss.exact_response(own, [100.0])
+    balance = ss.forced_response(own, [100.0], 63)
+    assert exact.converged.all()
+    for dof in "abc":
+        assert exact.amplitude(dof) == pytest.approx(balance.amplitude(dof), rel=1e-5)
+
+
 @settings(max_examples=15, derandomize=True)
 @given(
     chi=st.floats(-0.95, 0.0),

@@ -107,6 +107,7 @@ impl PowerSeries {
             })
             .collect();
         self.connect(system, regime);
+        self.slides.iter_mut().for_each(Slide::restart);
         if self.modes <= FEW && !self.is_nonlinear() {
             self.expand_few(system, &mut loads);
         } else {

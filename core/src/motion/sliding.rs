@@ -163,6 +163,13 @@ impl Slide {
         self.rate
     }
 
+    /// Forgets the coefficients: the motion is expanded anew.
+    pub(super) fn restart(&mut self) {
+        self.order = 0;
+        self.turn.fill(0.0);
+        self.along.iter_mut().for_each(|along| along[1..].fill(0.0));
+    }
+
     /// The traction's coefficients of one power, from those of the displacements up to it.
     pub(super) fn advance(&mut self, power: usize, contact: &[f64]) -> [f64; 2] {
         if power > 0 {
