@@ -5,8 +5,9 @@
 //! large matrix asks nobody. Work that does not end soon after it was told to is left to itself.
 
 use crate::arrays::refused;
-use pyo3::exceptions::PyKeyboardInterrupt;
+use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError};
 use pyo3::prelude::*;
+use std::any::Any;
 use std::convert::Infallible;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{sync_channel, RecvTimeoutError};
@@ -103,7 +104,7 @@ pub fn watched_parts<M: Send + 'static, T: Send + 'static>(
                 }
                 Ok(Word::Part(_)) | Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => match worker.join() {
-                    Err(panic) => std::panic::resume_unwind(panic),
+                    Err(panic) => return Err(defect(panic.as_ref())),
                     Ok(()) => break None,
                 },
             }
@@ -125,6 +126,14 @@ pub fn watched_parts<M: Send + 'static, T: Send + 'static>(
         };
         Ok((value, ended.map(|(_, error)| error)))
     })
+}
+
+/// The error of work that panicked. That of pyo3 is no `Exception`: it would end a study and lose what came
+/// before.
+fn defect(panic: &(dyn Any + Send)) -> PyErr {
+    let said = panic.downcast_ref::<String>().map(String::as_str);
+    let said = said.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("no message");
+    PyRuntimeError::new_err(format!("panic in the core of stickslip, a defect of it: {said}"))
 }
 
 /// The error of work that was left to itself without anything to keep.
