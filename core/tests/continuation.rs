@@ -39,7 +39,7 @@ fn walk(smooth: bool) -> Vec<Vec<f64>> {
     let mut curve = Fold { smooth };
     let height = if smooth { 1.0 } else { 1.25 };
     let start = vec![-1.0, 1.0 - height];
-    let mut walk = Continuation::new(&mut curve, start, 1.0, Steps::default()).unwrap();
+    let mut walk = Continuation::new(&mut curve, start, 1.0, Steps::default());
     let mut points = Vec::new();
     while walk.point[0] < 1.0 && points.len() < 500 {
         assert_eq!(walk.advance(&mut curve), Advance::Point, "{:?}", walk.point);
@@ -103,7 +103,7 @@ fn a_walk_passes_a_corner_that_turns_by_more_than_a_right_angle() {
         }
     };
     let mut curve = Plane(wedge);
-    let mut walk = Continuation::new(&mut curve, vec![0.0, -1.0], 1.0, Steps::default()).unwrap();
+    let mut walk = Continuation::new(&mut curve, vec![0.0, -1.0], 1.0, Steps::default());
     for _ in 0..200 {
         assert_eq!(walk.advance(&mut curve), Advance::Point, "{:?}", walk.point);
         if walk.point[1] < -0.9 && walk.point[0] < -0.1 {
@@ -119,7 +119,7 @@ fn a_walk_does_not_change_over_to_a_branch_that_comes_near() {
     let hyperbola = |x: f64, p: f64| [x * x - p * p - 1e-6, 2.0 * x, -2.0 * p];
     let mut curve = Plane(hyperbola);
     let start = vec![-(1.0_f64 + 1e-6).sqrt(), -1.0];
-    let mut walk = Continuation::new(&mut curve, start, 1.0, Steps::default()).unwrap();
+    let mut walk = Continuation::new(&mut curve, start, 1.0, Steps::default());
     while walk.point[1] < 1.0 {
         assert_eq!(walk.advance(&mut curve), Advance::Point, "{:?}", walk.point);
         assert!(walk.point[0] < 0.0, "{:?}", walk.point);

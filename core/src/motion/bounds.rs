@@ -110,9 +110,8 @@ impl ModalSystem {
         force: &[f64],
         speed: &[f64],
     ) -> Vec<f64> {
-        let linear =
-            |i: usize| speed.iter().enumerate().map(|(j, v)| regime.tangent[(i, j)] * v).sum();
-        let mut rates: Vec<f64> = (0..speed.len()).map(linear).collect();
+        let mut rates: Vec<f64> =
+            (0..speed.len()).map(|i| regime.tangent.times(i, speed)).collect();
         let slides = |plane: &&SlipPlane| regime.points[plane.points[0]] == PointState::Sliding;
         for plane in self.planes.iter().filter(slides) {
             let (along, pull) = self.pull(plane, force, speed);
@@ -186,9 +185,7 @@ impl ModalSystem {
 
     /// Rates of the force of a point and of its slip limit in given states [N/s].
     pub(super) fn loading(&self, regime: &ContactState, point: usize, speed: &[f64]) -> [f64; 2] {
-        let rate = |i: usize| -> f64 {
-            speed.iter().enumerate().map(|(j, v)| regime.tangent[(i, j)] * v).sum()
-        };
+        let rate = |i: usize| regime.tangent.times(i, speed);
         match self.bounds[point] {
             Bound::Friction { friction, normal } => [rate(point), friction * rate(normal)],
             _ => [rate(point), 0.0],

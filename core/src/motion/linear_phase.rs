@@ -101,9 +101,7 @@ impl LinearPhase {
                         after: Arc::clone(after),
                     });
                 }
-                let rate = |regime: &ContactState, i: usize| -> f64 {
-                    speed.iter().enumerate().map(|(j, v)| regime.tangent[(i, j)] * v).sum()
-                };
+                let rate = |regime: &ContactState, i: usize| regime.tangent.times(i, speed);
                 let jumps = (0..speed.len()).map(|i| rate(after, i) - rate(before, i));
                 let last = phases.last_mut();
                 let opens = system.normal_stiffness(event.point) > 0.0;

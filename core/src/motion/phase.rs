@@ -4,7 +4,7 @@
 //! force within the slip limits keeps an unstable mode of the slipping structure from growing. And
 //! a motion that the stuck structure damps, below the onset of slip, stays below it.
 
-use super::contact_state::ContactState;
+use super::contact_state::{Blocks, ContactState};
 use super::modal_system::{dot, ModalSystem};
 use super::state::State;
 use crate::contact::PointState;
@@ -21,7 +21,7 @@ pub(super) struct Phase {
     /// K, modes × modes.
     stiffness: Mat<f64>,
     /// T, points × points [N/m].
-    tangent: Mat<f64>,
+    tangent: Blocks,
     /// Scales S of the displacements in the state `(S η, η')`.
     scale: Vec<f64>,
     /// Poles λ [1/s].
@@ -40,7 +40,7 @@ impl Phase {
         let mut stiffness =
             Mat::from_fn(n, n, |i, j| if i == j { system.omega_squared()[i] } else { 0.0 });
         for a in 0..system.points() {
-            for b in 0..system.points() {
+            for b in system.together_with(a) {
                 let t = tangent[(a, b)];
                 if t == 0.0 {
                     continue;
@@ -101,10 +101,7 @@ impl Phase {
     fn rest(&self, system: &ModalSystem, state: &State) -> Vec<f64> {
         let u = system.contact_displacement(&state.displacement);
         (0..u.len())
-            .map(|i| {
-                let linear: f64 = (0..u.len()).map(|j| self.tangent[(i, j)] * u[j]).sum();
-                state.force[i] - linear
-            })
+            .map(|i| state.force[i] - self.tangent.times(i, &u))
             .collect()
     }
 }
@@ -241,7 +238,7 @@ impl Sticking {
         let (n, points) = (system.modes(), system.points());
         let per_pole = |point: usize, pole: usize| {
             let mut sum = c64::new(0.0, 0.0);
-            for other in 0..points {
+            for other in system.together_with(point) {
                 let would = open[point] && other == point;
                 let t = if would {
                     system.normal_stiffness(point)
@@ -292,7 +289,7 @@ impl Sticking {
         let z = self.phase.coordinates(&about, state);
         let u = system.contact_displacement(&about);
         let mean: Vec<f64> = (0..rest.len())
-            .map(|i| rest[i] + (0..u.len()).map(|j| self.phase.tangent[(i, j)] * u[j]).sum::<f64>())
+            .map(|i| rest[i] + self.phase.tangent.times(i, &u))
             .collect();
         let swing =
             |i: usize| -> f64 { self.force[i].iter().zip(&z).map(|(c, z)| c * z.norm()).sum() };

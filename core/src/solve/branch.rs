@@ -74,7 +74,7 @@ impl Branch {
             iterations: 0,
             jumps: 0,
         };
-        let Some(mut walk) = Continuation::new(curve, start, sign, steps) else { return branch };
+        let mut walk = Continuation::new(curve, start, sign, steps);
         branch.end = loop {
             match walk.advance(curve) {
                 Advance::Stalled => break End::Stalled,

@@ -79,26 +79,23 @@ pub struct Continuation {
 
 impl Continuation {
     /// A walk from a point of the curve, towards growing parameter, or falling.
-    ///
-    /// Nothing is returned where the equations are singular at the point.
-    pub fn new(curve: &mut dyn Curve, start: Vec<f64>, sign: f64, steps: Steps) -> Option<Self> {
+    pub fn new(curve: &mut dyn Curve, start: Vec<f64>, sign: f64, steps: Steps) -> Self {
         curve.accept(&start);
         let weights = curve.weights(&start);
         let mut ahead = vec![0.0; start.len()];
         ahead[curve.parameter(&start)] = sign;
         let (direction, orientation) =
             oriented(curve, &start, &weights, &ahead).unwrap_or((ahead, 1.0));
-        let first = steps.first;
-        Some(Self {
+        Self {
             point: start,
             iterations: 0,
             jumps: 0,
             direction,
             orientation,
-            step: first,
+            step: steps.first,
             steps,
             short: 0,
-        })
+        }
     }
 
     /// Goes on from the last two points, given in other unknowns.
@@ -111,16 +108,12 @@ impl Continuation {
         }
     }
 
-    /// Has the next step be no longer than this.
+    /// Has the next step be no longer than this, for points that are wanted closer to each other: a walk that is
+    /// short by that does not crawl.
     pub(crate) fn limit_step(&mut self, longest: f64) {
-        self.step = self.step.min(longest);
-    }
-
-    /// The same for a step that is taken again because its points are wanted closer to each other: a walk
-    /// that is short by that does not crawl.
-    pub(crate) fn shorten_step(&mut self, longest: f64) {
-        self.limit_step(longest);
-        self.short = 0;
+        if longest < self.step {
+            (self.step, self.short) = (longest, 0);
+        }
     }
 
     /// Takes one step.
@@ -341,4 +334,56 @@ pub fn across(curve: &mut dyn Curve, a: &[f64], b: &[f64], share: f64) -> Option
     let condition = Condition::Plane { normal: &normal, at: &z.clone() };
     let report = Bordered { weights: &weights, condition, max_iterations: 25 }.solve(curve, &mut z);
     report.converged.then_some(z)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use faer::Mat;
+
+    /// `x = 0`, where equations are defined up to this distance from the last point.
+    struct Near {
+        reach: f64,
+        last: f64,
+    }
+
+    impl Curve for Near {
+        fn unknowns(&self) -> usize {
+            2
+        }
+
+        fn residual(&mut self, z: &[f64], out: &mut [f64]) {
+            out[0] = if (z[1] - self.last).abs() > self.reach { f64::NAN } else { z[0] };
+        }
+
+        fn jacobian(&mut self, _: &[f64], out: &mut Mat<f64>) {
+            (out[(0, 0)], out[(0, 1)]) = (1.0, 0.0);
+        }
+
+        fn weights(&self, _: &[f64]) -> Vec<f64> {
+            vec![1.0; 2]
+        }
+
+        fn accept(&mut self, z: &[f64]) {
+            self.last = z[1];
+        }
+    }
+
+    /// A walk whose own steps fail one after the other ends; one whose steps are to be as short goes on.
+    #[test]
+    fn steps_that_are_wanted_short_are_no_crawl() {
+        let (short, most) = (5e-3 * Steps::default().longest, 10 * CRAWL);
+        let points = |reach: f64, limit: f64| {
+            let mut curve = Near { reach, last: 0.0 };
+            let mut walk = Continuation::new(&mut curve, vec![0.0; 2], 1.0, Steps::default());
+            let found = (0..most).take_while(|_| {
+                walk.limit_step(limit);
+                walk.advance(&mut curve) == Advance::Point
+            });
+            found.count()
+        };
+        assert_eq!(points(f64::INFINITY, short), most);
+        let crawled = points(short, f64::INFINITY);
+        assert!((CRAWL..2 * CRAWL).contains(&crawled), "{crawled}");
+    }
 }

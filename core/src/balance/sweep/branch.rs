@@ -14,8 +14,8 @@ use crate::solve::{across, between, Advance, Continuation, Curve as _, Steps};
 use crate::Error;
 use std::sync::Arc;
 
-/// Most points of a curve, …
-const MOST: usize = 5000;
+/// Most points of a curve at this tolerance: lines between them err by the square of their distance, …
+const MOST: (f64, f64) = (5000.0, 1e-3);
 /// … and most evaluations of its equations: so many per point, and so many more for a few hard places.
 const EVALUATIONS: [usize; 2] = [100, 6000];
 /// Points after one that asked for more harmonics or samples at which no fewer are tried.
@@ -147,7 +147,7 @@ impl Walk<'_, '_> {
             let last = &self.points[self.points.len() - 1];
             let Some(unknowns) = &last.unknowns else { return Ok(CurveEnd::Stalled) };
             let here = curve.point(unknowns, last.omega);
-            let ahead = match walk.take() {
+            let mut ahead = match walk.take() {
                 None => Continuation::new(&mut curve, here, (to - from).signum(), STEPS),
                 Some(mut walk) => {
                     let before = self.points.iter().rev().nth(1);
@@ -163,10 +163,9 @@ impl Walk<'_, '_> {
                         });
                         walk.restart(&mut curve, &before, &here);
                     }
-                    Some(walk)
+                    walk
                 }
             };
-            let Some(mut ahead) = ahead else { return Ok(CurveEnd::Stalled) };
             let change = self.stretch(&mut curve, &mut ahead, resolution, (from, to))?;
             let profile = curve.profile;
             self.evaluations += profile.evaluations;
@@ -193,7 +192,7 @@ impl Walk<'_, '_> {
                 return Ok(Change::Ends(CurveEnd::Interrupted));
             }
             curve.affordable = self.affordable();
-            if self.points.len() >= MOST || curve.is_spent() {
+            if self.points.len() >= self.most() || curve.is_spent() {
                 return Ok(Change::Ends(CurveEnd::Points));
             }
             let before = walk.clone();
@@ -259,6 +258,12 @@ impl Walk<'_, '_> {
                 return Ok(Change::Resolution(next));
             }
         }
+    }
+
+    /// Points that the tolerance may take.
+    fn most(&self) -> usize {
+        let (most, tolerance) = MOST;
+        (most * (tolerance / self.balance.settings.tolerance).sqrt().max(1.0)) as usize
     }
 
     /// Evaluations that may be made at this resolution until the next point.

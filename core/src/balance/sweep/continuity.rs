@@ -274,9 +274,7 @@ fn rate(equations: &mut Condensed<'_>) -> Option<Vec<f64>> {
 /// Where the branch through `from` leads at a frequency at which Newton's method has found `to`.
 fn followed(curve: &mut ForcedCurve<'_>, from: &[f64], to: Option<&[f64]>, end: f64) -> Reached {
     let sign = (end - from[from.len() - 1]).signum();
-    let Some(mut walk) = Continuation::new(curve, from.to_vec(), sign, STEPS) else {
-        return Reached::Lost(false);
-    };
+    let mut walk = Continuation::new(curve, from.to_vec(), sign, STEPS);
     let (mut before, mut turned) = (from.to_vec(), false);
     while walk.iterations < MOST && matches!(walk.advance(curve), Advance::Point) {
         let omega = walk.point[walk.point.len() - 1];

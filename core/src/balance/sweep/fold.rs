@@ -193,7 +193,7 @@ fn turn_near(curve: &mut ForcedCurve<'_>, [a, b, c]: &[Vec<f64>; 3]) -> Option<[
     let steps = Steps { first: 0.5 * longest, longest, ..super::branch::STEPS };
     curve.accept(a);
     let start = across(curve, a, c, 0.0)?;
-    let mut walk = Continuation::new(curve, start.clone(), sign, steps)?;
+    let mut walk = Continuation::new(curve, start.clone(), sign, steps);
     let mut last = [start.clone(), start];
     for _ in 0..LOOKS {
         if walk.advance(curve) != Advance::Point {

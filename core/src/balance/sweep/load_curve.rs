@@ -33,7 +33,7 @@ pub(super) fn joined_by_load(
     for sign in [1.0, -1.0] {
         let mut here = motion.to_vec();
         here.push(1.0);
-        let Some(mut walk) = Continuation::new(&mut curve, here, sign, STEPS) else { continue };
+        let mut walk = Continuation::new(&mut curve, here, sign, STEPS);
         for _ in 0..MOST {
             let before = walk.point.clone();
             if walk.advance(&mut curve) != Advance::Point {

@@ -153,9 +153,7 @@ impl<'a> Walk<'a> {
         }
         self.last = Some(log(&first));
         let steps = Steps { longest: LONGEST[usize::from(!whole)], ..STEPS };
-        let Some(mut walk) = Continuation::new(self.equations(), first, 1.0, steps) else {
-            return ModeEnd::Stalled;
-        };
+        let mut walk = Continuation::new(self.equations(), first, 1.0, steps);
         let (mut rises, mut taken) = (true, 0);
         loop {
             let before = walk.clone();
@@ -183,7 +181,7 @@ impl<'a> Walk<'a> {
             let length = distance(&before.point, &walk.point);
             if whole && length > CORNER && !self.shows(&before.point, &walk.point) {
                 walk = before;
-                walk.shorten_step((0.4 * length).max(STEPS.shortest));
+                walk.limit_step((0.4 * length).max(STEPS.shortest));
                 self.equations().hold(&walk.point);
                 continue;
             }
@@ -271,7 +269,7 @@ impl<'a> Walk<'a> {
         let equations = &mut self.truncation.equations;
         let longest = (SHORTER * distance(&before, &z)).max(STEPS.shortest);
         let steps = Steps { first: 0.5 * longest, longest, ..STEPS };
-        let mut walk = Continuation::new(equations, before, 1.0, steps)?;
+        let mut walk = Continuation::new(equations, before, 1.0, steps);
         let most = equations.profile.evaluations + 2 * EVALUATIONS[1];
         while equations.profile.evaluations < most {
             let from = walk.point.clone();
