@@ -176,3 +176,17 @@ def test_nodal_diameters_slip_and_stick():
     # A wave of nodal diameter 0 does not move one sector against the next.
     np.testing.assert_allclose(found.stuck[0], found.slipping[0])
     assert found.stuck[2, 0] > found.slipping[2, 0]
+
+
+@pytest.mark.parametrize("closure", [{"preload": 40.0}, {"preload": None, "gap": 1e-4}])
+def test_the_first_trace_of_a_tangential_spring_counts(closure):
+    """Without one there is no traction, and the derivative is that of one side."""
+
+    def response(stiffness):
+        model = mass_on_a_plane(tangential_stiffness=stiffness, **closure)
+        return ss.forced_response(model, [190.0, 250.0], 5)
+
+    without, little = response(0.0), 1e-2
+    slope = without.sensitivity("x", "pad", "tangential_stiffness")
+    change = (response(little).amplitude("x") - without.amplitude("x")) / little
+    np.testing.assert_allclose(slope, change, rtol=1e-4)

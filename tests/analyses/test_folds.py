@@ -240,3 +240,32 @@ def test_converged_points_along_a_range_are_balanced_at_rigid_stops(stiffness):
     assert frf.folds.size > 0
     assert frf.converged.mean() > 0.95
     assert frf.residual[frf.converged].max() <= 1e-8
+
+
+def hardening_chain():
+    size, dofs = 5, [f"x{number}" for number in range(1, 6)]
+    stiffness = 2.0 * np.eye(size) - np.eye(size, k=1) - np.eye(size, k=-1)
+    structure = ss.Structure(np.eye(size), stiffness, ss.ModalDamping(3e-4), dofs)
+    omega = ss.natural_frequencies(ss.Model(structure, []))
+    model = ss.Model(structure, [ss.Cubic("x2", stiffness=1e-3)], [ss.Force("x1", 0.1)])
+    return model, (0.9 * omega[0], 1.2 * omega[2])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("model", "omega", "harmonics", "tolerance", "folds"),
+    [
+        # The third mode has a node at the spring.
+        (*hardening_chain(), 3, 1e-3, 4),
+        (duffing(1.0).model(), (0.3, 4.0), 5, 1e-6, 2),
+    ],
+    ids=["light damping", "fine tolerance"],
+)
+def test_steps_that_the_tolerance_shortens_do_not_end_a_range(
+    model, omega, harmonics, tolerance, folds
+):
+    options = {"tolerance": tolerance, "stability": False}
+    frf = ss.forced_response(model, omega, harmonics, **options)
+    assert frf.omega[-1] == omega[1]
+    assert frf.converged.all()
+    assert frf.folds.size == folds

@@ -354,3 +354,14 @@ def test_orbits_of_many_joints_at_low_frequencies_end_within_their_steps():
     assert orbits.status[0] == "steps limit"
     # An orbit takes 110000 steps there, each as long as many of another law.
     assert orbits.counters["evaluations"] < 40000
+
+
+def test_a_slip_force_of_next_to_nothing_ends_a_motion_with_its_reason():
+    structure = ss.Structure([[1.0]], [[1.0]], [[0.05]], ["a"])
+    law = ss.Masing("a", stiffness=1.0, slip_force=1e-6, backbone="exponential")
+    driven = ss.transient(ss.Model(structure, [law], [ss.Force("a", 1.0)]), 1.1, 3)
+    assert driven.status == "halted"
+    assert driven.periods < 3
+    free = ss.classify(ss.Model(structure, [law]), {"a": 1.0})
+    assert free.reason == "crawling"
+    assert free.motion == "undecided"

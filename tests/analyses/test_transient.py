@@ -360,3 +360,11 @@ def test_harmonic_balance_takes_a_dof_of_hardly_any_mass():
     # Cycles by balance go without their stability.
     cycles = ss.limit_cycles(light(1e-12), -np.diag([1.0, 0.0]), harmonics=3, max_points=10)
     assert cycles.ratio.size
+
+
+@pytest.mark.timeout(60)
+def test_a_free_motion_is_refused_before_it_is_followed(monkeypatch):
+    """As its spectrum would be, for which the end of it is followed on."""
+    monkeypatch.setattr("stickslip.memory.physical_memory", lambda: 10**12)
+    with pytest.raises(ss.ModelError, match=r"^mass of dof 'pad': with 1e-09 kg .* condense"):
+        ss.classify(light(1e-9), {"body": 0.01})

@@ -93,6 +93,11 @@ impl ForcedBalance<'_> {
         Ok(solved)
     }
 
+    /// Whether static loads carry a body away.
+    fn is_carried_away(&self) -> bool {
+        *self.carried_away.get_or_init(|| is_carried_away(&self.model))
+    }
+
     /// Whether a homotopy leads to the solution: it does where there is one alone.
     fn follows(&self) -> bool {
         self.is_monotone()
@@ -147,9 +152,7 @@ impl ForcedBalance<'_> {
             Outcome::Converged => PointStatus::Converged,
             Outcome::Singular if equations.free => PointStatus::Free,
             Outcome::Stalled if equations.loose || equations.floats() => PointStatus::Free,
-            Outcome::Stalled | Outcome::Singular if is_carried_away(&self.model) => {
-                PointStatus::Free
-            }
+            Outcome::Stalled | Outcome::Singular if self.is_carried_away() => PointStatus::Free,
             Outcome::Stalled => PointStatus::Stalled,
             Outcome::Singular => PointStatus::Singular,
         };

@@ -47,6 +47,8 @@ pub struct ForcedBalance<'a> {
     share: f64,
     /// Frequencies at which nothing bounds the motion, once they are asked for [rad/s].
     pub(super) unbounded: OnceCell<Vec<f64>>,
+    /// Whether static loads carry a body away, once that is asked for.
+    pub(super) carried_away: OnceCell<bool>,
     pub(super) profile: Profile,
     /// Work that every point may take, if that is said …
     pub(super) granted: f64,
@@ -124,6 +126,7 @@ impl<'a> ForcedBalance<'a> {
             further: false,
             share: 0.0,
             unbounded: OnceCell::new(),
+            carried_away: OnceCell::new(),
             profile: Profile::default(),
             granted: f64::INFINITY,
             spent_at: f64::INFINITY,

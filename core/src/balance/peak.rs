@@ -7,6 +7,7 @@ use super::unknowns::Unknowns;
 use super::Progress;
 use crate::fourier::{amplitude, Measure};
 use crate::model::Model;
+use crate::solve::vertex;
 use crate::Error;
 
 /// Width of the final bracket relative to the frequency; the amplitude is stationary there, so
@@ -85,7 +86,7 @@ pub(crate) fn brent(
         if (best.0 - middle).abs() + 0.5 * (high - low) <= 2.0 * resolution {
             break;
         }
-        let parabola = vertex(best, second, third);
+        let parabola = vertex([second, best, third]);
         let accepted = parabola
             .filter(|&p| p > low && p < high && (p - best.0).abs() < 0.5 * before_last.abs());
         before_last = step;
@@ -121,16 +122,6 @@ pub(crate) fn brent(
         }
     }
     Ok(best)
-}
-
-/// Abscissa of the vertex of the parabola through three points.
-fn vertex(a: (f64, f64), b: (f64, f64), c: (f64, f64)) -> Option<f64> {
-    let r = (a.0 - b.0) * (a.1 - c.1);
-    let q = (a.0 - c.0) * (a.1 - b.1);
-    let p = (a.0 - c.0) * q - (a.0 - b.0) * r;
-    let divisor = 2.0 * (q - r);
-    let shift = p / divisor;
-    shift.is_finite().then_some(a.0 - shift)
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! How far the points that slip move a resonance, at the amplitude at which friction leaves it.
 
-use std::f64::consts::PI;
+use crate::contact::Describing;
+use faer::c64;
 
 /// Bisections of an amplitude over up to twelve decades.
 const BISECTIONS: usize = 30;
@@ -14,16 +15,10 @@ pub(super) struct SlippingPoint {
 }
 
 impl SlippingPoint {
-    /// Fundamental of a Jenkins element of this point over its displacement `u`: the stiffness, and
-    /// the force in phase with the velocity (Griffin 1980).
-    fn describing(&self, u: f64) -> [f64; 2] {
-        if self.stiffness * u <= self.limit {
-            return [self.stiffness, 0.0];
-        }
-        let share = self.limit / (self.stiffness * u);
-        let angle = (1.0 - 2.0 * share).acos();
-        let elastic = self.stiffness / PI * (angle - 0.5 * (2.0 * angle).sin());
-        [elastic, 4.0 / PI * self.limit * (1.0 - share)]
+    /// Its effect as the complex stiffness of a Jenkins element at an amplitude of the resonance.
+    fn carried(&self, amplitude: f64) -> c64 {
+        let own = Describing::of_jenkins(self.stiffness, self.limit, self.seen * amplitude);
+        own.stiffness * (self.effect * self.seen)
     }
 }
 
@@ -43,10 +38,7 @@ where
         return None;
     }
     high = high.min(1e12 * low);
-    let lost = |a: f64| {
-        let friction = points.iter().map(|one| one.effect * one.describing(one.seen * a)[1]);
-        decay * a + friction.sum::<f64>()
-    };
+    let lost = |a: f64| a * (decay + points.iter().map(|one| one.carried(a).im).sum::<f64>());
     for _ in 0..BISECTIONS {
         let middle = (low * high).sqrt();
         if lost(middle) < driven {
@@ -55,6 +47,5 @@ where
             high = middle;
         }
     }
-    let carried = |one: &SlippingPoint| one.effect * one.seen * one.describing(one.seen * low)[0];
-    Some(points.iter().map(carried).sum())
+    Some(points.iter().map(|one| one.carried(low).re).sum())
 }

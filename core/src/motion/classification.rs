@@ -5,9 +5,11 @@ use super::flow::Flow;
 use super::flow_event::{FlowEvent, Halt};
 use super::modal_system::ModalSystem;
 use super::output::Extremes;
+use super::pace::FASTEST_EXACT;
 use super::phase::{Slipping, Sticking};
 use super::returns::Returns;
 use super::state::State;
+use super::transient::PER_PERIOD;
 use super::transition::Transition;
 use crate::model::Model;
 use crate::Error;
@@ -23,8 +25,6 @@ const DRIFT: f64 = 0.05;
 const SETTLING: f64 = 0.5;
 /// Slow periods over which a motion without period is surveyed at the end.
 const SURVEYED: usize = 32;
-/// Highest rate of a motion over the lowest natural frequency that is followed.
-const FASTEST: f64 = 1e6;
 /// Slow periods between two choices of the section.
 const CHOICE: usize = 32;
 
@@ -57,6 +57,8 @@ pub enum Reason {
     Interrupted = 11,
     /// Dies away: next to nothing is left of it about an equilibrium.
     Faded = 12,
+    /// Undecided: the steps of the flow are too short to come to the end.
+    Crawling = 13,
 }
 
 /// What becomes of one start.
@@ -135,7 +137,7 @@ impl Classifier {
             let remedy = "no motion of the stuck structure oscillates; ground the structure";
             return Err(Error::value("stiffness", highest, remedy));
         };
-        system.check_pace(model, lowest.sqrt(), FASTEST)?;
+        system.check_pace(model, lowest.sqrt(), FASTEST_EXACT)?;
         Ok(Self {
             settings,
             slipping: Slipping::new(&system)?,
@@ -201,6 +203,7 @@ impl Classifier {
                 }
             }
             state.time = 0.0;
+            flow.grant(flow.steps + PER_PERIOD);
             let run = flow.run(&mut state, self.slow, &mut |passage| {
                 if let FlowEvent::Segment(segment) = passage {
                     returns.follow(
@@ -219,7 +222,8 @@ impl Classifier {
                 Err(Halt::Unbounded) => break Reason::Overflow,
                 Err(Halt::Contradiction) if self.passive => break Reason::Passive,
                 Err(Halt::Contradiction) => break Reason::Contradiction,
-                Err(Halt::Interrupted | Halt::Steps) => break Reason::Interrupted,
+                Err(Halt::Steps) => break Reason::Crawling,
+                Err(Halt::Interrupted) => break Reason::Interrupted,
             }
         };
         let time = passed as f64 * self.slow;
@@ -249,7 +253,9 @@ impl Classifier {
         let span = match reason {
             Reason::Closed => period,
             Reason::Stuck | Reason::Passive | Reason::Faded => self.slow,
-            Reason::Unbounded | Reason::Overflow | Reason::Contradiction => return fate,
+            Reason::Unbounded | Reason::Overflow | Reason::Contradiction | Reason::Crawling => {
+                return fate
+            }
             _ => SURVEYED as f64 * self.slow,
         };
         if let Ok(survey) = self.survey(&mut state.clone(), span, go_on) {
@@ -276,7 +282,9 @@ impl Classifier {
     ) -> Result<Survey, Halt> {
         let n = self.system.modes();
         let ended = || !go_on();
-        let mut flow = Flow::new(&self.system, TAU / self.slow).watched(&ended);
+        let granted = PER_PERIOD.saturating_mul((span / self.slow).ceil() as usize);
+        let flow = Flow::new(&self.system, TAU / self.slow).watched(&ended);
+        let mut flow = flow.granted(granted);
         let shapes: Vec<Vec<f64>> = (0..n).map(|dof| self.system.shape(dof).collect()).collect();
         let mut survey =
             Survey { range: vec![[f64::INFINITY, f64::NEG_INFINITY]; n], kinetic: vec![0.0; n] };

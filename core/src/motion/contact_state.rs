@@ -93,3 +93,62 @@ pub(super) struct Springs {
     /// Stiffness of points that press.
     pub(super) pressing: Vec<(usize, f64)>,
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::contact::{ContactLaw, Jenkins, StructuralDamper};
+    use crate::model::{Contact, Model};
+    use crate::structure::Structure;
+
+    /// Three points on a chain, two of which are of one element.
+    fn system() -> ModalSystem {
+        let stiffness = Mat::from_fn(3, 3, |i, j| match i.abs_diff(j) {
+            0 => 3.0,
+            1 => -1.0,
+            _ => 0.0,
+        });
+        let (mass, damping) = (Mat::<f64>::identity(3, 3), Mat::<f64>::zeros(3, 3));
+        let structure = Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref());
+        let rows = |first: usize, count: usize| {
+            Mat::from_fn(count, 3, |i, j| f64::from(u8::from(first + i == j)))
+        };
+        let pair = Mat::from_fn(2, 2, |i, j| if i == j { 2.0 } else { 0.5 });
+        let laws: [(Box<dyn ContactLaw>, Mat<f64>); 2] = [
+            (Box::new(StructuralDamper::new(pair.as_ref(), &[1.0, 2.0]).unwrap()), rows(0, 2)),
+            (Box::new(Jenkins::new(4.0, 1.0).unwrap()), rows(2, 1)),
+        ];
+        let contacts = laws.map(|(law, rows)| Contact { law, rows });
+        let model = Model::new(structure.unwrap(), contacts.into(), Vec::new()).unwrap();
+        ModalSystem::new(&model).unwrap()
+    }
+
+    /// A change of one element leaves the others their blocks: what a period of many contacts keeps does not grow
+    /// with the cube of their number.
+    #[test]
+    fn states_that_differ_in_one_element_share_the_others() {
+        let system = system();
+        let mut points = vec![PointState::Stuck; 3];
+        let before = ContactState::new(&system, &points);
+        points[2] = PointState::Forward;
+        let after = before.changed(&system, &points);
+        for [old, new] in [[&before.tangent, &after.tangent], [&before.slip_rate, &after.slip_rate]]
+        {
+            let shared: Vec<bool> =
+                old.0.iter().zip(&new.0).map(|(old, new)| Arc::ptr_eq(old, new)).collect();
+            assert_eq!(shared, [true, true, false]);
+        }
+        let anew = ContactState::new(&system, &points);
+        let speed = [0.3, -0.7, 1.1];
+        for i in 0..3 {
+            for j in 0..3 {
+                assert_eq!(after.tangent[(i, j)], anew.tangent[(i, j)]);
+                assert_eq!(after.slip_rate[(i, j)], anew.slip_rate[(i, j)]);
+            }
+            let whole: f64 = (0..3).map(|j| after.tangent[(i, j)] * speed[j]).sum();
+            assert!((after.tangent.times(i, &speed) - whole).abs() < 1e-15);
+        }
+        assert_eq!((before.tangent[(0, 1)], before.tangent[(1, 2)]), (0.5, 0.0));
+    }
+}

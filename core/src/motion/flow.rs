@@ -168,9 +168,10 @@ impl<'a> Flow<'a> {
                     Next::At(tau, to) => (length, change) = (tau, Some((point, to))),
                 }
             }
-            // Coefficients whose squares are no numbers have no step.
             if length <= 0.0 && change.is_none() {
-                return Err(Halt::Unbounded);
+                // Coefficients whose squares are no numbers have no step.
+                let known = self.series.is_bounded();
+                return Err(if known { Halt::Steps } else { Halt::Unbounded });
             }
             if length > 0.0 {
                 changes = if length > INSTANT * natural { 0 } else { changes };

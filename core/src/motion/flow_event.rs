@@ -68,7 +68,7 @@ pub enum Halt {
     Unbounded,
     /// Contacts change state without end at one instant.
     Contradiction,
-    /// All steps that were granted are taken.
+    /// All steps that were granted are taken, or they are too short to come to the end.
     Steps,
     /// The caller has ended the run.
     Interrupted,

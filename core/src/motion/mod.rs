@@ -54,6 +54,7 @@ pub(crate) use microslip::Microslip;
 pub use microslip::{Reversals, Turn};
 pub use modal_system::ModalSystem;
 pub(crate) use output::Extremes;
+pub(crate) use pace::FASTEST_EXACT;
 pub use power_series::PowerSeries;
 pub(crate) use power_series::Values;
 pub(crate) use propagator::Propagators;

@@ -3,6 +3,10 @@
 use crate::model::Model;
 use crate::structure::ModalDamping;
 
+/// Highest rate of a motion over the frequency of its period that the exact flow follows: ten thousand steps per
+/// period.
+pub(crate) const FASTEST_EXACT: f64 = 3e4;
+
 /// Rates at which the DOFs move while all others are fixed [1/s].
 pub(super) fn dof_rates(model: &Model) -> Vec<f64> {
     let structure = model.structure();

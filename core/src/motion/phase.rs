@@ -100,9 +100,7 @@ impl Phase {
     /// What of the contact forces is not linear in the displacements now, `f − T u`.
     fn rest(&self, system: &ModalSystem, state: &State) -> Vec<f64> {
         let u = system.contact_displacement(&state.displacement);
-        (0..u.len())
-            .map(|i| state.force[i] - self.tangent.times(i, &u))
-            .collect()
+        (0..u.len()).map(|i| state.force[i] - self.tangent.times(i, &u)).collect()
     }
 }
 
@@ -288,9 +286,8 @@ impl Sticking {
         }
         let z = self.phase.coordinates(&about, state);
         let u = system.contact_displacement(&about);
-        let mean: Vec<f64> = (0..rest.len())
-            .map(|i| rest[i] + self.phase.tangent.times(i, &u))
-            .collect();
+        let mean: Vec<f64> =
+            (0..rest.len()).map(|i| rest[i] + self.phase.tangent.times(i, &u)).collect();
         let swing =
             |i: usize| -> f64 { self.force[i].iter().zip(&z).map(|(c, z)| c * z.norm()).sum() };
         let touches = |i: &usize| self.open[*i] && system.pressing(*i, &about) + swing(*i) > 0.0;

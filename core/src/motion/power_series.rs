@@ -133,6 +133,11 @@ impl PowerSeries {
         self.slides.iter().map(|slide| slide.reach(&self.force)).fold(most, f64::min)
     }
 
+    /// Whether the squares of all coefficients are numbers.
+    pub(super) fn is_bounded(&self) -> bool {
+        dot(&self.modal, &self.modal).is_finite()
+    }
+
     /// Whether the equations are not linear along the step.
     pub(crate) fn is_nonlinear(&self) -> bool {
         !self.slides.is_empty() || !self.branches.is_empty()

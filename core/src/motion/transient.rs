@@ -4,6 +4,7 @@ use super::flow::Flow;
 use super::history::{History, Scheme, TransientSettings};
 use super::modal_system::ModalSystem;
 use super::output::Output;
+use super::pace::FASTEST_EXACT;
 use super::runge_kutta::RungeKutta;
 use super::state::State;
 use super::transition::Transition;
@@ -18,10 +19,10 @@ use std::time::Instant;
 /// Highest rate of a motion over the frequency of its period that steps of their own choice follow: faster
 /// is what hardly has a mass.
 const FASTEST: f64 = 1e6;
-/// The same of the exact flow, over the number of periods: it takes about so many steps in all, …
+/// The same of the exact flow, over the number of periods, if that is more: it takes about so many steps in all, …
 const STEPS: f64 = 5e5;
-/// … and over any number of them, as in exact orbits.
-const FASTEST_EXACT: f64 = 3e4;
+/// … and within a period at most so many.
+pub(super) const PER_PERIOD: usize = 1 << 20;
 
 /// Follows a motion from `start`, or from rest, over periods of the excitation.
 ///
@@ -76,7 +77,10 @@ pub fn transient(
         let begin = number as f64 * TAU / settings.omega;
         state.time = 0.0;
         let passed = match &mut integrator {
-            Integrator::Exact(flow) => output.follow(flow, &mut state, begin, &mut history),
+            Integrator::Exact(flow) => {
+                flow.grant(flow.steps + PER_PERIOD);
+                output.follow(flow, &mut state, begin, &mut history)
+            }
             Integrator::RungeKutta(scheme) => {
                 let passed = output.step_through(scheme, begin, &mut history, &go_on);
                 scheme.end().write(&mut state);

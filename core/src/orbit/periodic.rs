@@ -12,7 +12,7 @@ use super::start::start_of;
 use crate::balance::{Kept, Point, PointStatus, Progress, Unknowns};
 use crate::contact::Residual;
 use crate::model::Model;
-use crate::motion::{ModalSystem, Propagators, Quadrature, State};
+use crate::motion::{ModalSystem, Propagators, Quadrature, State, FASTEST_EXACT};
 use crate::solve::{newton, NewtonSettings, Outcome, System as _};
 use crate::timing::Profile;
 use crate::Error;
@@ -22,10 +22,6 @@ use std::sync::Arc;
 /// Rounds of following the motion itself, and spans in the first: each round doubles them.
 const ROUNDS: usize = 9;
 const FIRST_SPANS: usize = 4;
-
-/// Highest rate of a motion over its frequency that is followed: ten thousand steps of the flow per
-/// period.
-pub(super) const FASTEST: f64 = 3e4;
 
 /// Closing error, relative to the motion, of an orbit.
 const CLOSED: f64 = 1e-10;
@@ -179,7 +175,7 @@ impl<'a> PeriodicOrbits<'a> {
     /// # Errors
     /// The eigenvalues of a transition matrix cannot be found; a DOF that has hardly any mass.
     pub fn solve(&mut self, omega: f64, neighbour: Option<&State>) -> Result<Orbit, Error> {
-        self.plan.system.check_pace(self.plan.model, omega, FASTEST)?;
+        self.plan.system.check_pace(self.plan.model, omega, FASTEST_EXACT)?;
         if self.plan.carried_away {
             return Ok(self.empty(omega, PointStatus::Free));
         }

@@ -2,14 +2,14 @@
 //! more harmonics would cost more. A passive system always has one.
 
 use super::closed::Orbit;
-use super::periodic::{PeriodicOrbits, FASTEST};
+use super::periodic::PeriodicOrbits;
 use super::price::{orbit_price, steps_for, PER_OPERATION};
 use super::settings::OrbitSettings;
 use super::settled::Settled;
 use crate::balance::{ExactOrbits, Point, PointStatus, Progress, Unknowns};
 use crate::contact::Residual;
 use crate::model::Model;
-use crate::motion::State;
+use crate::motion::{State, FASTEST_EXACT};
 use faer::c64;
 use std::cell::{Cell, RefCell};
 
@@ -147,7 +147,7 @@ impl ExactOrbits for OrbitInitialGuess<'_> {
     fn price(&self, omega: f64, events: usize, highest: usize) -> Option<f64> {
         self.with(|orbits| {
             let system = orbits.system();
-            system.check_pace(self.model, omega, FASTEST).ok()?;
+            system.check_pace(self.model, omega, FASTEST_EXACT).ok()?;
             Some(orbit_price(system, orbits.half_wave(), omega, events, highest))
         })
     }

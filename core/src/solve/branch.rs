@@ -333,7 +333,7 @@ fn distance(curve: &dyn Curve, a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// Abscissa of the vertex of a parabola through three points.
-fn vertex([a, b, c]: [(f64, f64); 3]) -> Option<f64> {
+pub(crate) fn vertex([a, b, c]: [(f64, f64); 3]) -> Option<f64> {
     let (left, right) = (b.0 - a.0, b.0 - c.0);
     let p = left * left * (b.1 - c.1) - right * right * (b.1 - a.1);
     let q = left * (b.1 - c.1) - right * (b.1 - a.1);

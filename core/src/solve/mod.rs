@@ -22,7 +22,7 @@ mod scaled_lu;
 mod small_dense;
 
 pub(crate) use bracket::Bracket;
-pub(crate) use branch::between;
+pub(crate) use branch::{between, vertex};
 pub use branch::{Bounds, Branch, End};
 pub use broyden::{broyden, BroydenEffort, FirstJacobian};
 pub use continuation::{across, at_parameter, tangent, Advance, Continuation, Steps};

@@ -66,14 +66,21 @@ impl DirectCompliance {
     }
 
     /// Factors `K_s + ikωC − (kω)²M`.
-    fn factor(&self, harmonic: usize, omega: f64) -> Result<PartialPivLu<c64>, Error> {
+    fn factor(&self, harmonic: usize, omega: f64) -> Result<Factors, Error> {
         let n = self.mass.nrows();
         let excitation = omega;
         let omega = harmonic as f64 * omega;
-        let dynamic = Mat::from_fn(n, n, |i, j| {
-            self.restrained[(i, j)] - omega * omega * self.mass[(i, j)]
-                + c64::new(0.0, omega) * self.damping[(i, j)]
-        });
+        let parts = |i: usize, j: usize| {
+            let mass = omega * omega * self.mass[(i, j)];
+            let damping = c64::new(0.0, omega) * self.damping[(i, j)];
+            [self.restrained[(i, j)], -mass, damping]
+        };
+        // Pivots are compared as DOFs of one size, whatever the units of each.
+        let size = |i: usize| parts(i, i).iter().map(|part| part.norm()).sum::<f64>();
+        let units = (0..n).map(|i| if size(i) > 0.0 { size(i).sqrt().recip() } else { 1.0 });
+        let units: Vec<f64> = units.collect();
+        let dynamic =
+            Mat::from_fn(n, n, |i, j| parts(i, j).iter().sum::<c64>() * (units[i] * units[j]));
         let lu = dynamic.partial_piv_lu();
         let pivots = (0..n).map(|i| lu.U()[(i, i)].norm());
         let (least, largest) = pivots.fold((f64::MAX, 0.0_f64), |(l, m), p| (l.min(p), m.max(p)));
@@ -86,7 +93,7 @@ impl DirectCompliance {
                 Error::UndampedResonance { omega: excitation, harmonic, natural: omega }
             });
         }
-        Ok(lu)
+        Ok(Factors { lu, units })
     }
 
     /// `2k²ωM − ikC`: how fast the dynamic stiffness falls with ω.
@@ -115,6 +122,28 @@ impl DirectCompliance {
                 amplitude
             }
         })
+    }
+}
+
+/// A factored dynamic stiffness, its rows and columns multiplied by units.
+struct Factors {
+    lu: PartialPivLu<c64>,
+    units: Vec<f64>,
+}
+
+impl Factors {
+    fn solve(&self, mut right: Mat<c64>) -> Mat<c64> {
+        self.scale(&mut right);
+        self.lu.solve_in_place(&mut right);
+        self.scale(&mut right);
+        right
+    }
+
+    fn scale(&self, columns: &mut Mat<c64>) {
+        for j in 0..columns.ncols() {
+            let column = columns.col_as_slice_mut(j).iter_mut();
+            column.zip(&self.units).for_each(|(entry, unit)| *entry *= *unit);
+        }
     }
 }
 
@@ -181,5 +210,42 @@ impl Compliance for DirectCompliance {
     fn effort(&self, _observed: usize) -> [f64; 2] {
         // A factorisation each.
         [1.2 * (self.mass.nrows() as f64).powi(3); 2]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The same chain with DOFs in other units each: pivots of their own sizes are not small.
+    #[test]
+    fn receptances_do_not_depend_on_the_units_of_the_dofs() {
+        let receptance = |units: [f64; 3]| {
+            let of = |own: f64, other: f64| {
+                Mat::from_fn(3, 3, |i, j| {
+                    let entry = match i.abs_diff(j) {
+                        0 => own,
+                        1 => other,
+                        _ => 0.0,
+                    };
+                    c64::new(entry * units[i] * units[j], 0.0)
+                })
+            };
+            let rows =
+                Mat::from_fn(1, 3, |_, j| c64::new(if j == 0 { units[0] } else { 0.0 }, 0.0));
+            let load = vec![c64::new(0.0, 0.0), c64::new(0.0, 0.0), c64::new(units[2], 0.0)];
+            let loads = vec![HarmonicLoad { harmonic: 1, amplitude: load }];
+            let matrices = [of(1.0, 0.1), of(0.02, 0.01), of(2.0, -1.0)];
+            let direct = DirectCompliance::of_matrices(matrices, rows, loads);
+            let mut out = Receptance::default();
+            direct.receptance(1, 0.9, &mut out).unwrap();
+            [out.contact[0], out.stuck[0]]
+        };
+        let expected = receptance([1.0; 3]);
+        for units in [[1e-9, 1.0, 1e7], [1.0, 1e-12, 1.0], [1e8; 3]] {
+            for (one, same) in receptance(units).iter().zip(expected) {
+                assert!((one - same).norm() < 1e-12 * same.norm(), "{one} {same}");
+            }
+        }
     }
 }

@@ -199,14 +199,6 @@ impl FlutterCompliance {
             })
             .collect())
     }
-
-    /// Modal dampings `(φᴴ C φ, φᴴ C_neg φ)` in the modes without contacts [1/s].
-    ///
-    /// # Errors
-    /// As [`FlutterCompliance::stuck_modes`].
-    pub fn free_modes(&self) -> Result<Vec<StuckMode>, Error> {
-        self.stuck_modes(Mat::zeros(self.contacts(), self.contacts()).as_ref())
-    }
 }
 
 /// The free modes in which both dampings are diagonal, if there are such.

@@ -147,7 +147,7 @@ def _tail(
 ) -> tuple[Float, bool]:
     """Return the motion from its last state on, and whether the run was interrupted."""
     reason = list(Reason)[int(fates.columns["reason"][0])]
-    unknown = reason in (Reason.CONTRADICTION, Reason.INTERRUPTED)
+    unknown = reason in (Reason.CONTRADICTION, Reason.INTERRUPTED, Reason.CRAWLING)
     if fates.interrupted or unknown or reason.motion in (Motion.UNBOUNDED, Motion.DECAYING):
         return np.zeros((0, len(columns))), fates.interrupted
     with refusals(model):

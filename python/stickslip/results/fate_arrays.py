@@ -107,6 +107,12 @@ class Reason(Ending):
         "Next to nothing is left of the motion about an equilibrium away from the origin. Nothing "
         "needs to be done.",
     )
+    CRAWLING = (
+        "crawling",
+        Motion.UNDECIDED,
+        "Contacts whose slip force is next to nothing beside the motion left no steps that come to "
+        "the end. Leave these contacts out, or start with less.",
+    )
 
 
 class FateArrays(Columns):

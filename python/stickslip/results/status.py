@@ -166,8 +166,8 @@ class TransientStatus(Ending):
     )
     HALTED = (
         "halted",
-        "Contacts changed between stick and slip without end at one instant. "
-        "Change the start slightly, or take rk4.",
+        "The steps became too short to come to the end of a period, as with slip forces of next to "
+        "nothing beside the motion, and the run ended. Leave these contacts out, or take rk4.",
     )
 
 

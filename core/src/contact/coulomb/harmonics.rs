@@ -16,6 +16,9 @@ use crate::contact::{AssumedStart, Closure, ContactLaw as _, Coulomb, Held};
 use crate::contact::{Motion, Phase, PointSummary, SlipLoad};
 use std::f64::consts::TAU;
 
+/// Share of the slip limit that the force of a first trace of a spring reaches.
+const TRACE: f64 = 1e-8;
+
 impl Coulomb {
     /// Whether the normal load varies with the motion.
     fn varies(&self) -> bool {
@@ -178,6 +181,24 @@ impl Coulomb {
         by
     }
 
+    /// Force per tangential stiffness of the first trace of it, which hardly slips where it is pressed.
+    fn trace_of_spring(&self, motion: Motion<'_>, out: &mut [f64]) {
+        let largest = |series: &[f64]| series.iter().fold(0.0_f64, |most, u| most.max(u.abs()));
+        let tangential = self.directions * motion.table.harmonics().slots();
+        let (along, across) = motion.displacement.split_at(tangential);
+        let normal = self.normal_stiffness.unwrap_or(0.0) * largest(across);
+        let limit = self.friction * (self.normal_at_rest().abs() + normal);
+        let stiffness = TRACE * limit / largest(along);
+        out.fill(0.0);
+        if !(stiffness > 0.0 && stiffness.is_finite()) {
+            return;
+        }
+        let mut load = SlipLoad::default();
+        Self { tangential_stiffness: stiffness, ..*self }.slip_load(motion, false, &mut load);
+        let own = along.iter().zip(&load.value);
+        out.iter_mut().zip(own).for_each(|(out, (u, q))| *out = u - q / stiffness);
+    }
+
     /// Traction and `N₀ + k_n v` at equidistant instants.
     fn tractions(&self, motion: Motion<'_>, samples: usize) -> Vec<([f64; 2], f64)> {
         if let Some(constant) = Constant::of(self, motion) {
@@ -284,6 +305,9 @@ impl HarmonicForce for Coulomb {
         if let Some(constant) = Constant::of(self, motion).filter(|_| index < 3) {
             out.fill(0.0);
             return constant.parameter_slope(index, out);
+        }
+        if index == 1 && self.tangential_stiffness == 0.0 {
+            return self.trace_of_spring(motion, out);
         }
         if index == 3 && !self.varies() && !harmonics.has_mean() {
             // What a normal load that varies does to friction is the same in both halves of the period.

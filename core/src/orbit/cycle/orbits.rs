@@ -2,9 +2,8 @@
 
 use crate::balance::Point;
 use crate::model::FlutterModel;
-use crate::motion::{ModalSystem, Transition};
+use crate::motion::{ModalSystem, Transition, FASTEST_EXACT};
 use crate::orbit::loop_memory::LoopMemory;
-use crate::orbit::periodic::FASTEST;
 use crate::orbit::segments::Member;
 use crate::orbit::shooting::Shooting;
 use crate::orbit::start::{later, start_of};
@@ -39,7 +38,7 @@ impl<'a> CycleOrbits<'a> {
     /// # Errors
     /// The DOF that has hardly any mass.
     pub(super) fn paced(self, omega: f64) -> Result<Self, Error> {
-        self.system.check_pace(self.family.model(), omega, FASTEST)?;
+        self.system.check_pace(self.family.model(), omega, FASTEST_EXACT)?;
         Ok(self)
     }
 
