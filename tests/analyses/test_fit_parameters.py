@@ -7,7 +7,9 @@ import pytest
 from scipy import stats
 
 import stickslip as ss
-from stickslip.analyses.fit_parameters import FitParameter
+from stickslip.analyses.fit_parameters import FitParameter, require_unit
+from stickslip.plot.curves import traits_of
+from stickslip.views.kinds import view_of
 
 OMEGA = np.linspace(80.0, 160.0, 9)
 PEAK = ss.HighestPeak("tip", omega=(80.0, 160.0))
@@ -127,3 +129,34 @@ def test_stiffnesses_in_another_unit_are_no_stiffnesses_of_all_contacts():
     found = ss.forced_response(both, OMEGA, 3)
     every, one = (found.sensitivity("tip", name, "stiffness") for name in (None, "p1"))
     np.testing.assert_array_equal(every, one)
+
+
+def test_the_unit_of_a_cubic_spring_is_its_own_in_results_figures_and_tables():
+    stiff = model(pad("p1", 3.0), ss.Cubic("tip", stiffness=2e7, name="hard"))
+    keys = {"contacts": ["hard"], "stiffness": [1e7, 2e7]}
+    curve = ss.damper_curve(stiff, dof="tip", harmonics=1, **keys)
+    assert curve.plot().get_xlabel().endswith("[N/m^3]")
+    assert curve.to_dataset()["value"].attrs["units"] == "N/m^3"
+    (table,) = view_of([curve]).tables([("", curve)], "", ["tip"], "m")
+    assert "stiffness [N/m^3]" in list(table.columns[2].cells)
+    swept = ss.sweep(stiff, lambda one: ss.forced_response(one, [100.0], 1), **keys)
+    assert swept.labels[0] == "stiffness = 1e+07 N/m^3"
+    names = traits_of([swept.results[0], swept.results[1]])
+    assert names[0].endswith("= 1e+07 N/m^3 (hard)")
+    factors = ss.damper_curve(
+        stiff, dof="tip", harmonics=1, common="factor", **keys | {"stiffness": [1.0]}
+    )
+    assert factors.settings.variation.unit == "1"
+
+
+def test_contacts_of_several_units_take_no_common_value():
+    both = model(pad("p1", 3.0), ss.Cubic("tip", stiffness=2e7, name="hard"))
+    with pytest.raises(ss.ModelError, match="the stiffness of .p1., .hard. has several units"):
+        ss.damper_curve(both, dof="tip", stiffness=[1e3], contacts=["p1", "hard"], harmonics=1)
+
+
+def test_a_cubic_spring_is_fitted_by_no_stiffness_in_another_unit():
+    both = model(pad("p1", 3.0), ss.Cubic("tip", stiffness=2e7, name="hard"))
+    with pytest.raises(ss.ModelError, match=r"for it is in N/m\^3"):
+        require_unit(both, "hard.stiffness", ["1e7 N/m", 2e7])
+    require_unit(both, "p1.stiffness", ["1e7 N/m", 2e7])

@@ -95,9 +95,26 @@ def test_the_diagram_has_the_modes_near_the_excitation():
     np.testing.assert_allclose(drawn[0].get_ydata(), found.stuck[:, 4, 0] / (2 * np.pi))
 
 
+@pytest.mark.parametrize("kind", ["campbell", "safe"])
+@pytest.mark.parametrize(("unit", "turns"), [("rad/s", 2 * np.pi), ("Hz", 1.0), ("rpm", 60.0)])
+def test_diagrams_are_in_the_unit_of_frequency_that_is_asked_for(kind, unit, turns):
+    written = f'{DISK}kind = "{kind}"\nspeed = ["1500 rpm", "3000 rpm"]\n'
+    (found,) = Study.parse(written).run()
+    tops = []
+    for output in ("", f'[output]\nomega_unit = "{unit}"'):
+        drawn = Study.parse(written + output).tables.output
+        panel = view_of([found]).panels([found], (), drawn)[-1]
+        axes = Figure().add_subplot()
+        panel(ax=axes)
+        tops.append(axes.get_ylim()[1])
+    assert tops[1] == pytest.approx(turns * tops[0])
+    assert axes.get_ylabel().endswith(f"[{unit}]")
+
+
 def test_safe_shows_the_next_family_and_no_more():
-    (found,) = Study.parse(DISK + 'kind = "safe"\nspeed = ["3000 rpm"]').run()
-    drawing = view_of([found]).panels([found], (), None)
+    study = Study.parse(DISK + 'kind = "safe"\nspeed = ["3000 rpm"]')
+    (found,) = study.run()
+    drawing = view_of([found]).panels([found], (), study.tables.output)
     axes = Figure().add_subplot()
     drawing[0](ax=axes)
     assert axes.get_ylim()[1] < found.stuck[0, :, 1].max() / (2 * np.pi)

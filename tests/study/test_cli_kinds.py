@@ -353,6 +353,13 @@ def drawn_titles(panels):
     return titles
 
 
+def test_pictures_without_frequencies_take_no_unit_of_them():
+    result = ss.static_response(ss.reference.snecma_beam())
+    wanted = Wanted(dofs=None, omega_unit="rpm", log=True, per_force=False, contact=None)
+    with pytest.raises(ss.ModelError, match="--rpm: changes nothing of a static response"):
+        wanted.picture({}, [("rest.nc", result)])
+
+
 @pytest.mark.slow
 def test_pictures_name_the_results_they_show():
     moved = [

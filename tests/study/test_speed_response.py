@@ -109,6 +109,20 @@ def test_its_table_and_picture(tmp_path, monkeypatch):
     assert (tmp_path / "results" / "blade.png").stat().st_size > 5000
 
 
+@pytest.mark.parametrize(("unit", "turns"), [("rad/s", 1.0), ("Hz", 0.5 / np.pi)])
+def test_the_axis_of_speeds_is_in_the_unit_that_is_asked_for(unit, turns):
+    (found,) = Study.parse(BLADE + ORDER).run()
+    output = Study.parse(BLADE + ORDER + f'[output]\nomega_unit = "{unit}"').tables.output
+    (panel,) = view_of([found]).panels([found], ["tip"], output)
+    axes = Figure().add_subplot()
+    panel(ax=axes)
+    assert axes.get_xlabel() == f"rotor speed at engine order 2 [{unit}]"
+    np.testing.assert_allclose(axes.lines[0].get_xdata(), turns * found.speed)
+    (above,) = axes.child_axes
+    axes.figure.draw_without_rendering()
+    np.testing.assert_allclose(above.get_xlim(), found.omega[[0, -1]] / (2 * np.pi))
+
+
 def test_speeds_without_a_solution_are_told():
     (found,) = Study.parse(BLADE + ORDER).run()
     amplitude = np.array(found.amplitude)

@@ -125,12 +125,15 @@ class FitParameter:
         common: Common = "factor" if factors else "value"
         return chosen_contacts(model, self.key, self.owner or None, common)
 
-    def is_factor(self, model: Model) -> bool:
-        """Whether it multiplies matrices of contacts, instead of being a value of theirs."""
+    def other_unit(self, model: Model) -> str:
+        """Say what it is instead of a value in the unit of its name, "" if it is such a value."""
         if self.is_damping or self.name in (LEVEL, LOAD):
-            return False
-        ref = self._chosen(model)[0]
-        return self.key in model.contacts[located(model, ref)[0]].factors
+            return ""
+        contact = model.contacts[located(model, self._chosen(model)[0])[0]]
+        if self.key in contact.factors:
+            return "a factor on a matrix"
+        unit = contact.other_units.get(self.key, "")
+        return f"in {unit}" if unit else ""
 
     def reached(self, model: Model) -> set[tuple[str, str]]:
         """Return what it sets in a model: contacts or their points, each with the parameter."""
@@ -140,13 +143,14 @@ class FitParameter:
 
 
 def require_unit(model: Model, name: str, values: Iterable[object]) -> None:
-    """Refuse values with a unit of a parameter that is a factor."""
-    if not FitParameter(name, 0.0, np.inf).is_factor(model):
+    """Refuse values with a unit of a parameter that is a factor, or in another unit."""
+    reason = FitParameter(name, 0.0, np.inf).other_unit(model)
+    if not reason:
         return
     try:
         without_units(list(values), "", f"parameters[{name!r}]")
     except EntryError as error:
-        raise ModelError(f"{error}, for it is a factor on a matrix") from None
+        raise ModelError(f"{error}, for it is {reason}") from None
 
 
 def require_distinct(model: Model, names: Iterable[str], entry: str = "parameters") -> None:

@@ -41,7 +41,15 @@ def variation_of(
 ) -> Variation:
     """Return the variation of a parameter of contacts, or of points of them."""
     chosen = chosen_contacts(model, parameter, keys.contacts, keys.common, known)
-    return Variation.of(parameter=parameter, contacts=chosen, common=keys.common)
+    owners = [model.contacts[located(model, ref)[0]] for ref in chosen]
+    units = {one.other_units.get(parameter, "") for one in owners}
+    if len(units) > 1 and keys.common == "value":
+        raise ModelError(
+            f"contacts: the {parameter} of {listed(written(chosen))} has several units; name "
+            'contacts of one, or give common="factor"'
+        )
+    own = min(units, default="")
+    return Variation.of(parameter=parameter, contacts=chosen, common=keys.common, other_unit=own)
 
 
 def chosen_contacts(

@@ -32,11 +32,11 @@ Rpm = Annotated[
 ]
 
 
-def omega_unit(*, hertz: bool, rpm: bool) -> Literal["rad/s", "Hz", "rpm"]:
-    """Return the unit of frequency axes that the options ask for."""
+def omega_unit(*, hertz: bool, rpm: bool) -> Literal["Hz", "rpm"] | None:
+    """Return the unit of frequency axes that the options ask for, None if none."""
     if hertz and rpm:
         raise ModelError("--hertz and --rpm exclude each other; give one")
-    return "Hz" if hertz else "rpm" if rpm else "rad/s"
+    return "Hz" if hertz else "rpm" if rpm else None
 
 
 app = typer.Typer(

@@ -33,7 +33,7 @@ class Wanted:
     """What of results is to be drawn, as the options of the command say."""
 
     dofs: Sequence[str] | None
-    omega_unit: OmegaUnit
+    omega_unit: OmegaUnit | None
     log: bool
     per_force: bool
     contact: str | None
@@ -72,6 +72,9 @@ class Wanted:
         kind = results[0].kind.replace("_", " ")
         self._check_options("curve" if curves else "", f"a {kind}")
         if not curves:
+            if self.omega_unit is not None and not view.frequencies:
+                option = {"Hz": "--hertz", "rpm": "--rpm"}.get(self.omega_unit)
+                raise ModelError(f"{option}: changes nothing of a {kind}; leave it out")
             known = dict.fromkeys(dof for result in results for dof in result.dofs)
             for dof in self.dofs or ():
                 if dof not in known:
@@ -81,7 +84,7 @@ class Wanted:
         drawn = partial(
             plot.curves,
             curves,
-            omega_unit=self.omega_unit,
+            omega_unit=self.omega_unit or "rad/s",
             log=self.log,
             normalise="force" if self.per_force else None,
         )
@@ -106,7 +109,7 @@ class Wanted:
         """Give the panels of one curve for a picture other than the default one."""
         from stickslip import plot
 
-        unit = self.omega_unit
+        unit = self.omega_unit or "rad/s"
         if picture == "waveform":
             index = _index(result, omega, "--waveform", unit)
             for dof in self._dofs(result):

@@ -67,7 +67,7 @@ def run(
         require_writable(out)
     results = _compute(loaded, out, clock, quiet=quiet)
     output = loaded.tables.output
-    view = view_of(results, output.omega_unit)
+    view = view_of(results, output.frequency_unit)
     levels = ["" if one.level is None else f"{one.level:.10g}" for one in loaded.cases]
     named = list(zip(levels, results, strict=True))
     if not quiet:

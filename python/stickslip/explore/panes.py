@@ -76,7 +76,7 @@ class Pane:
 def curve(study: Study, result: ForcedResponse, dof: str) -> Pane:
     """Return the response curve between its linear limits, with its error band and its peak."""
     output = study.tables.output
-    view = view_of([result], output.omega_unit)
+    view = view_of([result], output.frequency_unit)
     return Pane(
         "curve",
         panels=list(view.panels([result], [dof], output)),
@@ -106,7 +106,7 @@ def damper(
     common, now = present(model, parameter)
     found = _optimum(study, result, dof, parameter, common, now, look)
     output = study.tables.output
-    view = view_of([found], output.omega_unit)
+    view = view_of([found], output.frequency_unit)
     at, unit = now, found.curve.settings.variation.unit.removesuffix("1")
     if parameter == "level" and force_level(model):
         at, unit = force_level(model), "N"

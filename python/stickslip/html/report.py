@@ -27,7 +27,7 @@ def report(
     *,
     title: str | None = None,
     dofs: Iterable[str] | str | None = None,
-    omega_unit: Literal["rad/s", "Hz", "rpm"] = "rad/s",
+    omega_unit: Literal["rad/s", "Hz", "rpm"] | None = None,
     length_unit: Literal["auto", "m", "mm", "um"] = "auto",
 ) -> None:
     """Write results as a self-contained HTML page, whole or not at all.
@@ -48,7 +48,9 @@ def report(
     dofs : str or iterable of str, optional
         Degrees of freedom to show. Default: those with a force or a contact.
     omega_unit : {"rad/s", "Hz", "rpm"}, optional
-        Unit of the frequency axes, and rpm of tables; of a disk rpm are those of the rotor.
+        Unit of the frequency axes, of responses over the speed that of the speed, and rpm of
+        tables; of a disk rpm are those of the rotor. Default: "rad/s"; of responses over the speed
+        "rpm", of diagrams over speed or nodal diameter "Hz".
     length_unit : {"auto", "m", "mm", "um"}, optional
         Unit of the amplitudes. Default: that which suits the numbers.
 
@@ -63,7 +65,8 @@ def report(
     if target.suffix.lower() not in (".html", ".htm"):
         raise ModelError(f"{target}: a report is a page of HTML; let its name end in .html")
     require_place(target)
-    choice(omega_unit, "omega_unit", ["rad/s", "Hz", "rpm"])
+    if omega_unit is not None:
+        choice(omega_unit, "omega_unit", ["rad/s", "Hz", "rpm"])
     choice(length_unit, "length_unit", ["auto", "m", "mm", "um"])
     entries = _entries(results)
     shown = _dofs(dofs, entries)

@@ -167,7 +167,7 @@ def _group(
 ) -> dict[str, object]:
     """Return results that are drawn and tabulated together, and each of them by itself."""
     results = [entry.result for entry in members]
-    view, first = view_of(results, output.omega_unit), results[0]
+    view, first = view_of(results, output.frequency_unit), results[0]
     notable = list(notable_dofs(first.model, first.dofs))
     shown = [dof for dof in dofs or notable if dof in first.dofs] or notable
     named = [(entry.name, entry.result) for entry in members]

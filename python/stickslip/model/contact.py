@@ -43,8 +43,8 @@ class Contact(ABC):
     factors: ClassVar[frozenset[str]] = frozenset()
     """Adjustable parameters that are factors on what the contact was given: they take no value."""
 
-    other_units: ClassVar[frozenset[str]] = frozenset()
-    """Adjustable parameters that are in another unit than those of this name elsewhere."""
+    other_units: ClassVar[Mapping[str, str]] = {}
+    """Units of adjustable parameters that are in another one than those of this name elsewhere."""
 
     slips: ClassVar[bool] = True
     """Whether its points stick and slip; a spring without friction remembers no force."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import ClassVar
 
@@ -127,7 +128,7 @@ class Cubic(_Spring):
 
     law: ClassVar[str] = "cubic"
     keys: ClassVar[tuple[str, ...]] = ("stiffness",)
-    other_units: ClassVar[frozenset[str]] = frozenset({"stiffness"})
+    other_units: ClassVar[Mapping[str, str]] = {"stiffness": "N/m^3"}
 
     stiffness: float = field(kw_only=True)
 

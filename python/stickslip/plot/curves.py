@@ -370,7 +370,8 @@ def _traits(result: ForcedResponse) -> dict[str, str]:
         for key, symbol, unit in _TRAITS:
             if key in parameters and key not in contact.factors:
                 values = ", ".join(f"{value:.4g}" for value in dict.fromkeys(parameters[key]))
-                traits[f"{symbol}{of}"] = f"${symbol}$ = {values} {unit}".rstrip() + of
+                own = contact.other_units.get(key, unit)
+                traits[f"{symbol}{of}"] = f"${symbol}$ = {values} {own}".rstrip() + of
     exact = isinstance(result, ExactResponse)
     traits["H"] = "exact" if exact else f"H = {result.settings.harmonics}"
     return traits

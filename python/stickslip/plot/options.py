@@ -151,6 +151,7 @@ class CycleOptions(Several, Amplitude, total=False):
 class SpeedOptions(Frame, total=False):
     """Keywords of `speed_response`."""
 
+    omega_unit: Annotated[OmegaUnit, "rpm", "Unit of the speed of the rotor."]
     labels: Annotated[Sequence[str] | None, None, "One per result. Default: the engine orders."]
     log: Annotated[bool, True, "Logarithmic amplitude axis."]
     diagram: Annotated[

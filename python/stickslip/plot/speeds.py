@@ -34,22 +34,23 @@ def speed_response(
     """
     listed = several(SpeedResponse, results, lambda one: f"the amplitude of {one.dof}")
     names = checked_labels(options["labels"], [f"EO {one.engine_order:g}" for one in listed])
-    rpm, length = style.OMEGA["rpm"].factor, style.LENGTH[options["length_unit"]]
+    unit, length = options["omega_unit"], style.LENGTH[options["length_unit"]]
+    factor = style.OMEGA[unit].factor
     for one, name, colour in zip(listed, names, style.colours(len(listed)), strict=True):
-        ax.plot(rpm * one.speed, length.factor * one.amplitude, color=colour, lw=1.6, label=name)
+        ax.plot(factor * one.speed, length.factor * one.amplitude, color=colour, lw=1.6, label=name)
         if options["diagram"] is not None:
-            _mark_resonances(ax, one, options["diagram"], colour)
-    ends = rpm * np.array([f(one.speed) for one in listed for f in (np.min, np.max)])
+            _mark_resonances(ax, one, options["diagram"], colour, factor)
+    ends = factor * np.array([f(one.speed) for one in listed for f in (np.min, np.max)])
     if ends.min() < ends.max():
         ax.set_xlim(ends.min(), ends.max())
     ax.set_yscale("log" if options["log"] else "linear")
     orders = {one.engine_order for one in listed}
-    style.label_omega(ax, style.rotor_speed(orders.pop() if len(orders) == 1 else None))
+    style.label_omega(ax, style.rotor_speed(orders.pop() if len(orders) == 1 else None, unit))
     ax.set_ylabel(f"half peak-to-peak of {style.named(listed[0].dof)} [{length.label}]")
 
 
 def _mark_resonances(
-    ax: Axes, response: SpeedResponse, diagram: Campbell, colour: style.Colour
+    ax: Axes, response: SpeedResponse, diagram: Campbell, colour: style.Colour, factor: float
 ) -> None:
     """Draw lines at the speeds at which the engine order meets natural frequencies."""
     order = response.engine_order
@@ -63,8 +64,9 @@ def _mark_resonances(
         label = f"resonances of EO {order:g}{state}"
         for one in diagram.crossings(slipping=slipping):
             if one.order == order and ends[0] <= one.speed <= ends[1]:
-                at = style.OMEGA["rpm"].factor * one.speed
-                ax.axvline(at, color=colour, lw=1.0, ls=line, label=label, zorder=1.5)
+                ax.axvline(
+                    factor * one.speed, color=colour, lw=1.0, ls=line, label=label, zorder=1.5
+                )
                 label = "_"
 
 

@@ -90,14 +90,15 @@ def omega_scale(unit: OmegaUnit, results: Any) -> Scale:
     return rotor_speed(order)
 
 
-def rotor_speed(order: float | None) -> Scale:
+def rotor_speed(order: float | None, unit: OmegaUnit = "rpm") -> Scale:
     """Return the scale of frequencies of an engine order drawn over the speed of the rotor.
 
     None are several orders.
     """
+    factor = OMEGA[unit].factor
     if order is None:
-        return Scale(OMEGA["rpm"].factor, f"{_ROTOR} [rpm]")
-    return Scale(OMEGA["rpm"].factor / order, f"{_ROTOR} at engine order {order:g} [rpm]", order)
+        return Scale(factor, f"{_ROTOR} [{unit}]")
+    return Scale(factor / order, f"{_ROTOR} at engine order {order:g} [{unit}]", order)
 
 
 def omega_scales(unit: OmegaUnit, results: Sequence[Any]) -> tuple[Scale, list[Scale]]:

@@ -113,6 +113,10 @@ class Variation(ParameterMode):
         description="Names of the contacts whose parameter it is, or points of them as (name, "
         "point); none for a level.",
     )
+    other_unit: str = Field(
+        default="",
+        description="Unit of the parameter, if it is not that which other contacts have it in.",
+    )
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -132,7 +136,7 @@ class Variation(ParameterMode):
         """Unit of the parameter."""
         if self.common == "factor":
             return "1"
-        return UNITS[self.parameter]
+        return self.other_unit or UNITS[self.parameter]
 
     @property
     def behind(self) -> str:

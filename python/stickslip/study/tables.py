@@ -71,10 +71,11 @@ class OutputTable(Table):
         description="DOFs tabulated and drawn; left out: those that carry a force or a contact.",
         examples=[["tip", "damper"]],
     )
-    omega_unit: Annotated[Literal["rad/s", "Hz", "rpm"], ONE_OF] = Field(
-        default="rad/s",
-        description="Unit of the frequency axis; rpm of a disk are those of the rotor. Figures "
-        "over the speed or the nodal diameter are in rpm and Hz.",
+    omega_unit: Annotated[Literal["rad/s", "Hz", "rpm"], ONE_OF] | None = Field(
+        default=None,
+        description="Unit of the frequency axis, of responses over the speed that of the speed; "
+        "rpm of a disk are those of the rotor. Left out: rad/s; of responses over the speed rpm, "
+        "of diagrams over speed or nodal diameter Hz.",
     )
     length_unit: Annotated[
         Literal["auto", "m", "mm", "um"], ONE_OF, BeforeValidator(_length_unit)
@@ -82,6 +83,11 @@ class OutputTable(Table):
         default="auto",
         description="Unit of the amplitudes; auto: that which suits the numbers.",
     )
+
+    @property
+    def frequency_unit(self) -> Literal["rad/s", "Hz", "rpm"]:
+        """Unit of figures over the frequency."""
+        return self.omega_unit or "rad/s"
 
 
 class SweepTable(SweepKeys):

@@ -109,7 +109,7 @@ class CurveView(View[ForcedResponse]):
 
     def panels(self, results: Sequence[ForcedResponse], dofs: Dofs, output: Output) -> Panels:
         """Return the response curves, one panel per DOF."""
-        length, omega = output.length_unit, output.omega_unit
+        length, omega = output.length_unit, output.frequency_unit
         draw = partial(plots.curves, results, omega_unit=omega, length_unit=length)
         return [partial(draw, dof) for dof in dofs]
 
@@ -128,7 +128,7 @@ class CurveView(View[ForcedResponse]):
 
 
 def _details(result: ForcedResponse, dofs: Dofs, output: Output) -> Iterator[Panel]:
-    length, omega = output.length_unit, output.omega_unit
+    length, omega = output.length_unit, output.frequency_unit
     if isinstance(result.model, MistunedDisk):
         for dof in _of_sectors(result.model, dofs):
             yield partial(plots.blade_bars, result, dof, omega_unit=omega, length_unit=length)

@@ -65,7 +65,7 @@ class CycleView(View[LimitCycles]):
 
     def panels(self, results: Sequence[LimitCycles], dofs: Dofs, output: Output) -> Panels:
         """Return amplitude over what is followed, one panel per DOF, and the multipliers."""
-        length, omega = output.length_unit, output.omega_unit
+        length, omega = output.length_unit, output.frequency_unit
         curves = partial(
             plots.limit_cycles,
             list(results),
@@ -109,6 +109,7 @@ class MapView(View[StabilityMap]):
     """The limits at every value; the diagnostics name every value without one."""
 
     numbers = ("varied", "value", "limit r", "rad/s", "stable up to r")
+    frequencies = False
 
     def rows(self, result: StabilityMap, dofs: Dofs, length: float) -> Rows:
         """Return a row per value."""
@@ -138,6 +139,7 @@ class FlutterView(View[FlutterMap]):
 
     texts = ("wave",)
     last = ("stable", "by itself")
+    frequencies = False
 
     def headings(self, dofs: Dofs, length_unit: str) -> list[str]:
         """Return the headings of the numbers, among them one for every DOF."""

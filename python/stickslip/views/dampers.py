@@ -58,7 +58,7 @@ class DamperView(View[DamperCurve]):
 
     def panels(self, results: Sequence[DamperCurve], dofs: Dofs, output: Output) -> Panels:
         """Return the damper performance curves: amplitude, frequency, limits and optimum."""
-        length, omega = output.length_unit, output.omega_unit
+        length, omega = output.length_unit, output.frequency_unit
         draw = partial(plots.damper, length_unit=length, omega_unit=omega)
         return [partial(draw, result) for result in results]
 

@@ -40,7 +40,7 @@ class FitView(View[Fit]):
 
     def panels(self, results: Sequence[Fit], dofs: Dofs, output: Output) -> Panels:
         """Return measured and predicted numbers, and their differences."""
-        units = {"length_unit": output.length_unit, "omega_unit": output.omega_unit}
+        units = {"length_unit": output.length_unit, "omega_unit": output.frequency_unit}
         drawn: Panels = []
         for one in results:
             if one.of_curves.any() or one.of_loops.any():

@@ -74,6 +74,8 @@ class View(ABC, Generic[Kind]):
     """What `RPM` stands for; empty: tables are without that column."""
     last: Sequence[str] = ()
     """Headings of texts behind the numbers."""
+    frequencies: bool = True
+    """Whether a unit of frequency or speed changes the default picture."""
 
     def headings(self, dofs: Dofs, length_unit: str) -> list[str]:
         """Return the headings of the numbers."""
@@ -198,7 +200,7 @@ def _texts(result: Result, severity: Severity) -> list[str]:
     return [one.text for one in result.diagnostics if one.severity is severity]
 
 
-def view_of(results: Sequence[Result], omega_unit: str = "rad/s") -> View[Any]:
+def view_of(results: Sequence[Result], omega_unit: str | None = None) -> View[Any]:
     """Return the view of some results.
 
     Tables have frequencies in rpm too where that is the unit, and of a disk the rotor's speed.

@@ -27,6 +27,7 @@ class MistuningView(View[MistuningStudy]):
 
     texts = ("dof",)
     numbers = ("deviation", "coupling [N/m]", "disks", "mean", "largest", f"{_HIGH:g} %", "95 %")
+    frequencies = False
 
     def rows(self, result: MistuningStudy, dofs: Dofs, length: float) -> Rows:
         """Return a row for the disks of one deviation and one coupling, and every DOF."""

@@ -60,7 +60,7 @@ class ModeView(View[NonlinearModes]):
 
     def panels(self, results: Sequence[NonlinearModes], dofs: Dofs, output: Output) -> Panels:
         """Return frequency over amplitude, and damping."""
-        options = {"omega_unit": output.omega_unit}
+        options = {"omega_unit": output.frequency_unit}
         return [
             partial(plots.backbone, list(results), damping=False, **options),
             partial(plots.mode_damping, list(results)),

@@ -51,7 +51,7 @@ class MotionView(View[MotionClass]):
 
     def panels(self, results: Sequence[MotionClass], dofs: Dofs, output: Output) -> Panels:
         """Return the spectra of motions that have one."""
-        unit, drawn = output.omega_unit, [result for result in results if len(result.tail)]
+        unit, drawn = output.frequency_unit, [result for result in results if len(result.tail)]
         if not drawn:
             raise ModelError("motion: one that decays or grows for ever has no picture")
         return [partial(plots.lines, one, dof, omega_unit=unit) for one in drawn for dof in dofs]
@@ -62,6 +62,7 @@ class BasinView(View[BasinMap]):
 
     texts = ("motion", "mode")
     numbers = ("starts", "share", "rad/s")
+    frequencies = False
 
     def rows(self, result: BasinMap, dofs: Dofs, length: float) -> Rows:
         """Return a row per outcome."""

@@ -62,7 +62,8 @@ class SpeedView(View[SpeedResponse]):
 
     def panels(self, results: Sequence[SpeedResponse], dofs: Dofs, output: Output) -> Panels:
         """Return amplitudes over the speed, one panel per DOF with a line per engine order."""
-        draw = partial(plots.speed_response, length_unit=output.length_unit)
+        unit, length = output.omega_unit or "rpm", output.length_unit
+        draw = partial(plots.speed_response, omega_unit=unit, length_unit=length)
         return [
             partial(draw, [one for one in results if one.dof == dof])
             for dof in dict.fromkeys(one.dof for one in results)
@@ -134,16 +135,18 @@ class CampbellView(View[Campbell]):
     def panels(self, results: Sequence[Campbell], dofs: Dofs, output: Output) -> Panels:
         """Return the diagram that the settings name."""
         drawn: Panels = []
+        unit = output.omega_unit or "Hz"
         for one in results:
             match one.settings.diagram:
                 case "campbell":
-                    drawn.append(partial(plots.campbell, one))
+                    drawn.append(partial(plots.campbell, one, omega_unit=unit))
                 case "safe":
+                    orders = list(one.orders)
                     tables = [(one.at(place), speed) for place, speed in enumerate(one.speed)]
                     drawn += [
-                        partial(plots.safe, table, float(speed), orders=list(one.orders))
+                        partial(plots.safe, table, float(speed), orders=orders, omega_unit=unit)
                         for table, speed in tables
                     ]
                 case _:
-                    drawn.append(partial(plots.nodal_diameters, one.at(0)))
+                    drawn.append(partial(plots.nodal_diameters, one.at(0), omega_unit=unit))
         return drawn

@@ -20,6 +20,7 @@ class StaticView(View[StaticResponse]):
 
     texts = ("what",)
     numbers = ("displacement [{}]", "traction [N]", "normal force [N]")
+    frequencies = False
 
     def rows(self, result: StaticResponse, dofs: Dofs, length: float) -> Rows:
         """Return a row per DOF and one per contact point."""

@@ -79,7 +79,7 @@ class SweepView(View[Sweep]):
             if isinstance(result.results[0], ForcedResponse):
                 units: dict[str, Any] = {
                     "length_unit": output.length_unit,
-                    "omega_unit": output.omega_unit,
+                    "omega_unit": output.frequency_unit,
                 }
                 curves = partial(plots.curves, list(result.results), labels=result.labels, **units)
                 drawn += [partial(curves, dof=dof) for dof in dofs]

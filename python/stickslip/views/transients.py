@@ -62,7 +62,7 @@ class TransientView(View[Transient]):
         """Return histories of DOFs and contacts, section and spectrum of the first DOF."""
         drawn: Panels = []
         for result in results:
-            unit, omega = output.length_unit, output.omega_unit
+            unit, omega = output.length_unit, output.frequency_unit
             history = partial(plots.history, result, omega_unit=omega, length_unit=unit)
             drawn += [partial(history, dof=dof) for dof in dofs]
             forces = partial(plots.contact_history, result, omega_unit=omega)

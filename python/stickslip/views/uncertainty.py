@@ -64,7 +64,7 @@ class UncertaintyView(View[Uncertainty]):
         for one in results:
             if isinstance(one.settings.quantity, Backbone):
                 drawn += [
-                    partial(plots.backbone_band, one, omega_unit=output.omega_unit),
+                    partial(plots.backbone_band, one, omega_unit=output.frequency_unit),
                     partial(plots.backbone_band, one, damping=True),
                 ]
             else:
