@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import scipy
 
 import stickslip as ss
 from stickslip.results.status import Status
@@ -67,12 +68,25 @@ def test_waves_that_are_damped_otherwise_than_their_law_says_are_told(order: int
     assert "wave-damping" not in {one.code for one in of_both.diagnostics}
 
 
-def test_modal_damping_of_a_sector_that_is_cut_is_refused_as_what_it_is() -> None:
+def test_modal_damping_of_a_sector_that_is_cut_is_refused_with_what_gives_its_ratio() -> None:
     stiffness = [[1.2e5, -1e5, 0.0], [-1e5, 2e5, -1e5], [0.0, -1e5, 1.2e5]]
-    dofs = ["left", "mid", "right"]
-    modal = ss.Structure(np.diag([0.5, 1.0, 0.5]), stiffness, ss.ModalDamping(0.01), dofs)
-    with pytest.raises(ss.ModelError, match="modal damping of a sector that is cut free"):
+    mass, dofs = np.diag([0.5, 1.0, 0.5]), ["left", "mid", "right"]
+    modal = ss.Structure(mass, stiffness, ss.ModalDamping(0.01), dofs)
+    told = r"join every sector to all others.*ss\.Rayleigh\(stiffness=2 \* ratio / omega\)"
+    with pytest.raises(ss.ModelError, match=told):
         ss.cyclic_sector(modal, {"right": "left"})
+    plain, joined = ss.cyclic_sector(ss.Structure(mass, stiffness, dofs=dofs), {"right": "left"})
+    omega = ss.natural_frequencies(disk_of(plain, joined), nodal_diameter=2)[0]
+    damped = ss.Structure(mass, stiffness, ss.Rayleigh(stiffness=2 * 0.01 / omega), dofs)
+    m, c, k = disk_of(*ss.cyclic_sector(damped, {"right": "left"})).matrices_at(1)
+    values, shapes = scipy.linalg.eigh(k, m)
+    ratio = (shapes[:, 0].conj() @ c @ shapes[:, 0]).real / (2.0 * np.sqrt(values[0]))
+    assert ratio == pytest.approx(0.01, rel=1e-10)
+
+
+def disk_of(sector: ss.Structure, joined: ss.Interface) -> ss.BladedDisk:
+    forces = [ss.Force("mid", 1.0)]
+    return ss.BladedDisk(sector, 8, forces=forces, engine_order=2, interface=joined)
 
 
 def test_a_crossing_at_a_computed_speed_is_one() -> None:

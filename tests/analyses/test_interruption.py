@@ -143,3 +143,12 @@ def test_progress_ends_at_one():
     ss.forced_response(snecma_beam(), np.linspace(180, 200, 3000), 15, progress=shares.append)
     assert shares == sorted(shares)
     assert shares[-1] == 1.0
+
+
+def test_static_loads_that_take_long_hear_ctrl_c(ctrl_c, monkeypatch):
+    structure = ss.Structure([[1.0]], [[4e4]], dofs=["tip"])
+    model = ss.Model(structure, [Slow(["tip"])], [ss.Force("tip", 10.0, harmonic=0)])
+    monkeypatch.setattr(Slow, "pause", 30.0)
+    ctrl_c(0.05)
+    with pytest.raises(KeyboardInterrupt):
+        ss.static_response(model)

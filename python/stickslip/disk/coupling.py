@@ -204,9 +204,13 @@ def cyclic_sector(structure: Structure, boundary: Mapping[str, str]) -> tuple[St
     following = np.array([[float(dof == name) for name in kept] for dof in ahead])
     if isinstance(structure.damping_law, ModalDamping):
         reason = (
-            "structure: modal damping of a sector that is cut free is not that of the disk; give"
+            "structure: modal damping of a sector that is cut free is not that of the disk, which "
+            "would join every sector to all others; for a ratio at a frequency omega give"
         )
-        raise ModelError(f"{reason} ss.Rayleigh(...) or a matrix", study=f"{reason} rayleigh = ...")
+        raise ModelError(
+            f"{reason} ss.Rayleigh(stiffness=2 * ratio / omega)",
+            study=f"{reason} damping = {{ rayleigh = {{ stiffness = ... }} }}, 2 ratio / omega",
+        )
     # The blocks of a skew part change sign across the cut, which one block per cut cannot say.
     damping = structure.damping
     if np.abs(damping - damping.T).max() > ASYMMETRY * np.abs(damping).max():
