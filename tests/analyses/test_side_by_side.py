@@ -71,10 +71,12 @@ def test_parts_come_in_their_order_from_as_many_threads(
     monkeypatch: pytest.MonkeyPatch, count: int
 ) -> None:
     threads(monkeypatch, count)
-    seen, told = set(), []
+    seen, told, all_at_work = set(), [], threading.Barrier(count)
 
     def part(number: int, progress: Progress) -> int:
         seen.add(threading.get_ident())
+        if number < count:
+            all_at_work.wait()
         time.sleep(0.02 * (7 - number))
         assert progress is not None
         progress(1.0)

@@ -139,12 +139,11 @@ def test_a_signal_that_comes_during_an_import_is_not_lost(number, tmp_path, monk
         import swallowing  # noqa: F401
 
         time.sleep(20.0)
+        raise AssertionError("not stopped")
 
-    started = time.monotonic()
     with pytest.raises(typer.Exit) as stop:
         wait()
     assert stop.value.exit_code == CODES[number]
-    assert time.monotonic() - started < 10.0
 
 
 def test_a_signal_is_heeded_at_once_where_a_module_that_is_imported_calls(tmp_path, monkeypatch):
