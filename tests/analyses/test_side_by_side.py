@@ -55,7 +55,7 @@ def read(rest: str) -> Study:
 
 
 def threads(monkeypatch: pytest.MonkeyPatch, count: int) -> None:
-    monkeypatch.setattr(side_by_side, "_processors", lambda: count)
+    monkeypatch.setattr(side_by_side, "processors", lambda: count)
 
 
 def flutter() -> tuple[ss.Model, np.ndarray]:

@@ -254,7 +254,7 @@ def test_every_signal_that_ends_a_run_saves_what_was_computed(tmp_path, number, 
     # The folder is made when the study has been read.
     while process.poll() is None and not (tmp_path / "results").exists():
         time.sleep(0.02)
-    time.sleep(0.5)
+    time.sleep(1.5)
     process.send_signal(number)
     _, complaints = process.communicate(timeout=50)
     assert process.returncode == code, complaints

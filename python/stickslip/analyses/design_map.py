@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from inspect import signature
-from os import cpu_count
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip import _core
 from stickslip.analyses.run import Progress, Run, refusals
+from stickslip.analyses.side_by_side import processors
 from stickslip.checks import (
     brief,
     members,
@@ -112,7 +112,7 @@ def design_map(
     ]
     with Run("design map", progress) as run:
         with refusals(*models):
-            found = np.array(_core.peak_map(problems, span, threads or cpu_count() or 1, run))
+            found = np.array(_core.peak_map(problems, span, threads or processors(), run))
         shape = tuple(map(len, values))
         columns = [column.reshape(shape) for column in found.T]
         harmonics, status = (column.astype(np.int64) for column in columns[2:])

@@ -35,14 +35,9 @@ _DAMPING_KEYS = {ModalDamping: ("ratio",), Rayleigh: ("mass", "stiffness")}
 class FitParameter:
     """A number that is fitted, between two bounds.
 
-    Attributes
-    ----------
-    name : str
-        "pad.friction"; "friction", of all contacts that have it; "damping.ratio", "damping.mass",
-        "damping.stiffness", of the law of the structure's damping; "level", a factor on the forces
-        that vary; "load", a factor on the static ones.
-    low, high : float
-        Bounds.
+    Its name is "pad.friction"; "friction", of all contacts that have it; "damping.ratio",
+    "damping.mass", "damping.stiffness", of the law of the structure's damping; "level", a factor on
+    the forces that vary; "load", a factor on the static ones.
     """
 
     name: str

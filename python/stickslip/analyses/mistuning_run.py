@@ -107,16 +107,13 @@ class Work:
 
     def _take(self, place: tuple[int, ...], rows: Iterable[tuple[int, Row]], points: int) -> None:
         for dof, row in rows:
-            self._set((*place, dof), row)
+            # A peak that was not found is at no blade.
+            blade = row.blade if math.isfinite(row.amplitude) else -1
+            for name, value in row._replace(blade=blade)._asdict().items():
+                self.arrays[name][*place, dof] = value
         self.known[place] = True
         self.points += points
         self.done += 1
-
-    def _set(self, place: tuple[int, ...], row: Row) -> None:
-        # A peak that was not found is at no blade.
-        blade = row.blade if math.isfinite(row.amplitude) else -1
-        for name, value in row._replace(blade=blade)._asdict().items():
-            self.arrays[name][place] = value
 
     def run(
         self,

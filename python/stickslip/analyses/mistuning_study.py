@@ -173,7 +173,9 @@ def _tuned_peaks(
     """Return the peaks of the tuned disk, by one sector if its motion is one wave."""
     model: Model = disk
     groups = [[dof] for dof in dofs]
-    if not _is_one_wave(disk):
+    # The forces, and so the motion of the tuned disk, travel as a single wave.
+    ahead = (disk.order_of(one.harmonic) - one.harmonic * disk.engine_order for one in disk.forces)
+    if any(order % disk.sectors for order in ahead):
         model = disk.mistuned(0.0)
         groups = [[f"{blade}.{dof}" for blade in range(disk.sectors)] for dof in dofs]
     require_held(model, settings.residual)
@@ -208,12 +210,6 @@ def _coupled_disks(disk: BladedDisk, stiffness: ArrayLike | None) -> list[tuple[
         (value, disk._like(couplings=[replace(one, stiffness=value) for one in disk.couplings]))
         for value in values
     ]
-
-
-def _is_one_wave(disk: BladedDisk) -> bool:
-    """Tell whether the forces, and so the motion of the tuned disk, travel as a single wave."""
-    ahead = (disk.order_of(one.harmonic) - one.harmonic * disk.engine_order for one in disk.forces)
-    return all(order % disk.sectors == 0 for order in ahead)
 
 
 def _identity_of(

@@ -24,14 +24,8 @@ REPORT_EVERY = 0.1
 class Run(Interruption):
     """A block in which an analysis computes; signals wait until what was computed is safe.
 
-    Parameters
-    ----------
-    what : str
-        What is computed, in words.
-    progress : callable or None
-        Called with the share of the work done.
-    model : Model, optional
-        Decomposed now, while Ctrl-C still ends an analysis at any line: nothing is lost yet.
+    A `model` is decomposed at once, while Ctrl-C still ends an analysis at any line: nothing is
+    lost yet. `what` is computed, in words.
     """
 
     def __init__(self, what: str, progress: Progress, model: Model | None = None) -> None:
@@ -53,12 +47,9 @@ class Run(Interruption):
             self._reported = monotonic()
 
     def ended(self, result: _Kind, count: str, advice: str = "") -> _Kind:
-        """Return the result of a run that is complete.
+        """Return the result of a run that is complete, or raise `Interrupted`, which holds it.
 
-        Raises
-        ------
-        Interrupted
-            If it is not; the exception holds what there is, and says how much by `count`.
+        `count` says how much there is.
         """
         if result.interrupted:
             raise stopped(self._what, count, result, advice)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from itertools import islice
-from os import cpu_count
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,6 +17,7 @@ from stickslip.analyses.nonlinear_modes import nonlinear_modes
 from stickslip.analyses.optimal_damper import optimal_damper
 from stickslip.analyses.pattern_store import Row
 from stickslip.analyses.run import Run, refusals
+from stickslip.analyses.side_by_side import processors
 from stickslip.analyses.stores import Sample, SampleStore
 from stickslip.disk.bladed_disk import BladedDisk
 from stickslip.errors import ModelError
@@ -194,7 +194,7 @@ class SampleRun:
 
         if client is not None and missing:
             return compute_on(client, computed, work, run, deliver)
-        return _compute_here(work, threads or cpu_count() or 1, run, deliver)
+        return _compute_here(work, threads or processors(), run, deliver)
 
 
 def _compute_here(

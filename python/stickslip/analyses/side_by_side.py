@@ -32,22 +32,12 @@ _WITHIN = local()
 def in_turn(
     parts: Sequence[Callable[[Progress], _Kind]], progress: Progress, *, alone: bool = False
 ) -> Iterator[_Kind]:
-    """Yield what parts of a work give, in their order.
+    """Yield what parts of a work give, in their order; `alone`, one after the other in this thread.
 
-    Parameters
-    ----------
-    parts : sequence of callable
-        Each gets the progress that it has to tell; Ctrl-C, and what `progress` raises to end the
-        work, reach it as `KeyboardInterrupt` of that.
-    progress : callable or None
-        Called in this thread, with the share of the work done.
-    alone : bool, optional
-        One part after the other, in this thread.
-
-    Raises
-    ------
-    KeyboardInterrupt
-        Behind the last part that was complete; or what the part raises that was not.
+    Each part gets the progress that it has to tell; Ctrl-C, and what `progress` raises to end the
+    work, reach it as `KeyboardInterrupt` of that. `progress` is called in this thread, with the
+    share of the work done. `KeyboardInterrupt` comes behind the last part that was complete, or
+    what the part raises that was not.
     """
     count = len(parts)
     threads = at_once(count, alone=alone)
@@ -91,7 +81,7 @@ def in_turn(
 
 def at_once(count: int, *, alone: bool = False) -> int:
     """Return how many of so many parts `in_turn` works on at the same time."""
-    return 1 if alone or getattr(_WITHIN, "part", False) else min(_processors(), count)
+    return 1 if alone or getattr(_WITHIN, "part", False) else min(processors(), count)
 
 
 def has_own_laws(model: Model) -> bool:
@@ -99,7 +89,7 @@ def has_own_laws(model: Model) -> bool:
     return any(isinstance(contact, ContactLaw) for contact in model.contacts)
 
 
-def _processors() -> int:
+def processors() -> int:
     """Return how many processors this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 

@@ -109,16 +109,13 @@ def merge_stores(
     for file in files:
         if not is_file(file):
             raise ModelError(f"{file}: no such store")
-        kind, same = _stored_kind(file), stored_identity(file)
+        # A file that is no store is refused by any class of one.
+        named = looked_at(file, "SELECT name FROM sqlite_master")
+        kind: type[RowStore] = SampleStore if (SampleStore.table,) in named else PatternStore
+        same = stored_identity(file)
         with kind(file, same) as source, kind(target, same) as whole:
             counts[str(file)] = whole.take(source)
     return counts
-
-
-def _stored_kind(file: Path) -> type[RowStore]:
-    """Return the class of a store; of a file that is none, any, which refuses it."""
-    named = looked_at(file, "SELECT name FROM sqlite_master")
-    return SampleStore if (SampleStore.table,) in named else PatternStore
 
 
 def stored_identity(file: Path) -> Identity:

@@ -66,7 +66,8 @@ def chosen_contacts(
         return ()
     if contacts is None:
         return _all_contacts(parameter, model, common, known)
-    one = isinstance(contacts, str | int) or _is_point(contacts)
+    point = isinstance(contacts, tuple) and [type(part) for part in contacts] == [str, int]
+    one = isinstance(contacts, str | int) or point
     given: tuple[Any, ...] | None = (contacts,) if one else as_list(contacts)
     if given is None:
         raise ModelError(f"contacts: {brief(contacts)} is not a list of contacts")
@@ -77,11 +78,6 @@ def chosen_contacts(
         names = written(chosen)
         raise ModelError(f"contacts: one is given more than once in {listed(names)}")
     return tuple(chosen)
-
-
-def _is_point(contacts: object) -> bool:
-    """Return whether a tuple is one point and no list of contacts."""
-    return isinstance(contacts, tuple) and [type(part) for part in contacts] == [str, int]
 
 
 def _all_contacts(parameter: str, model: Model, common: Common, known: Known) -> tuple[Chosen, ...]:

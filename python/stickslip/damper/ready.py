@@ -370,7 +370,9 @@ def _places(
     if positions is None:
         return [None], [None]
     listed = _listed(positions)
-    if any(isinstance(one, list | tuple) and one and _is_list(one[0]) for one in listed):
+    if any(
+        isinstance(one, list | tuple) and one and isinstance(one[0], list | tuple) for one in listed
+    ):
         if len(listed) != 2:
             raise ModelError(f"positions: {len(listed)} lists of points; give one, or two")
         left, right = ([_place(one) for one in _listed(each)] for each in listed)
@@ -391,7 +393,3 @@ def _place(value: object) -> Place:
 
 def _listed(value: Any) -> tuple[Any, ...]:
     return members(value, "positions", _POINTS)
-
-
-def _is_list(value: object) -> bool:
-    return isinstance(value, list | tuple)

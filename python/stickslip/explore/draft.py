@@ -150,26 +150,10 @@ _MATRICES: tuple[Place, ...] = tuple(
 
 
 class Draft:
-    """A study file with other numbers.
+    """A study file with other numbers; refused if its analysis has no response curve.
 
-    Parameters
-    ----------
-    path : Path
-        The study file.
-
-    Attributes
-    ----------
-    study : Study
-        The study as the file has it.
-    knobs : tuple of Knob
-        The numbers that can be moved.
-    swept : bool
-        Whether the file has a table ``[sweep]``, which is left out.
-
-    Raises
-    ------
-    ModelError
-        If the file is refused, or its analysis has no response curve.
+    `study` is as the file has it, `knobs` are the numbers that can be moved, and `swept` says
+    whether the file has a table ``[sweep]``, which is left out.
     """
 
     def __init__(self, path: Path) -> None:

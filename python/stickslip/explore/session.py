@@ -38,11 +38,8 @@ class OutdatedError(Exception):
 class Desk(Generic[Task]):
     """A thread with room for one task in work and one that waits.
 
-    Parameters
-    ----------
-    work : callable
-        Takes a task and a look, to be called often, which raises `OutdatedError` once the task is
-        no longer wanted. An analysis takes it as its `progress`.
+    Its `work` takes a task and a look, to be called often, which raises `OutdatedError` once the
+    task is no longer wanted. An analysis takes it as its `progress`.
     """
 
     def __init__(self, work: Callable[[Task, Look], None]) -> None:
@@ -131,15 +128,7 @@ class Computed(NamedTuple):
 
 
 class Session:
-    """One open page.
-
-    Parameters
-    ----------
-    path : Path
-        The study file.
-    tell : callable
-        Sends a message to the page, from any thread.
-    """
+    """One open page, to which `tell` sends a message from any thread."""
 
     def __init__(self, path: Path, tell: Tell) -> None:
         self.draft, self._tell = Draft(path), tell

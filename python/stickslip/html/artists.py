@@ -51,10 +51,7 @@ class UndrawableError(Exception):
 def traces(ax: Axes, y: str) -> Iterator[Trace]:
     """Give everything drawn on axes, from back to front, for plotly's vertical axis `y`.
 
-    Raises
-    ------
-    UndrawableError
-        If something has no counterpart.
+    `UndrawableError` says that something has no counterpart.
     """
     rows = [one for one in ax.containers if isinstance(one, container.BarContainer)]
     bars = {id(bar): one for one in rows for bar in one.patches}

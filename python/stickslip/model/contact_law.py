@@ -324,14 +324,11 @@ class ContactLaw(Contact):
     def _answer(self, before: Matrix, after: Matrix, state: Matrix) -> list[Matrix]:
         """Return force, state and tangents of a step."""
         answer: Any = self.step(before, after, state)
-        if not (isinstance(answer, tuple) and len(answer) == 3 and _are_tangents(answer[-1])):
+        full = isinstance(answer, tuple) and len(answer) == 3 and isinstance(answer[-1], tuple)
+        if not (full and len(answer[-1]) == len(Tangents._fields)):
             raise ModelError(f"{self._entry}: step returns no (force, state, Tangents(...))")
         force, new, tangents = answer
         return arrays_of((force, new, *tangents), self._sizes, self._entry)
-
-
-def _are_tangents(value: object) -> bool:
-    return isinstance(value, tuple) and len(value) == len(Tangents._fields)
 
 
 def _diagonal(blocks: Matrix) -> Matrix:

@@ -37,19 +37,9 @@ def massless_dofs(model: Model) -> tuple[str, ...]:
 
 
 def notable_dofs(model: Model, observed: Sequence[str]) -> tuple[str, ...]:
-    """Choose the DOFs to show when none are named.
+    """Choose the DOFs to show when none are named, of those whose motion is known.
 
-    Parameters
-    ----------
-    model : Model
-        What was computed.
-    observed : sequence of str
-        The DOFs whose motion is known.
-
-    Returns
-    -------
-    tuple of str
-        Up to four that carry a force or a contact, in this order, or else the first ones.
+    Up to four that carry a force or a contact, in this order, or else the first ones.
     """
     notable = [dof for dof in loaded_dofs(model) if dof in observed]
     return tuple(notable or observed)[:_SHOWN_DOFS]

@@ -58,10 +58,7 @@ def limit_curve(
 ) -> tuple[Float, Float]:
     """Return the response curve of a linear limit: frequencies [rad/s] and amplitudes [m].
 
-    Raises
-    ------
-    ModelError
-        If the measure is "max" and a static load pushes the limit structure away.
+    It is refused if the measure is "max" and a static load pushes the limit structure away.
     """
     linear, resonances = _linear(model, stuck=stuck, static=measure == "max")
     harmonics = max((force.harmonic for force in linear.forces), default=1) or 1

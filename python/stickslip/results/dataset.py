@@ -34,14 +34,8 @@ class Variable(NamedTuple):
 class Record:
     """Variables by name, with attributes of the whole; read like a dataset of xarray.
 
-    Attributes
-    ----------
-    variables : mapping of Variable
-        The numbers. A variable that has the name of its only dimension is its coordinate.
-    attrs : mapping
-        What is said of all.
-    coordinates : frozenset of str
-        Further variables that are coordinates.
+    A variable that has the name of its only dimension is its coordinate; further ones are
+    `coordinates`.
     """
 
     variables: Mapping[str, Variable] = field(default_factory=dict)

@@ -228,26 +228,11 @@ def fit_expansion(
     values: Float,
     degree: int | None = None,
 ) -> Expansion:
-    """Return the expansion of a number in independent parameters.
+    """Return the expansion of a number in independent parameters, from (n, d) samples of them.
 
-    Parameters
-    ----------
-    names : sequence of str
-        The parameters.
-    laws : sequence of scipy.stats distributions
-        Their distributions, d in all.
-    parameters : ndarray, shape (n, d)
-        Samples of the parameters.
-    values : ndarray, shape (n,)
-        The number at every sample.
-    degree : int, optional
-        Highest degree. Default: the one of the least error by cross-validation. Degrees rise from 1
-        until the error has risen twice running or is below 1e-12, as far as the samples allow.
-
-    Raises
-    ------
-    ModelError
-        If OpenTURNS is not installed, or there are fewer than 16 samples.
+    Without a highest degree it has the one of the least error by cross-validation: degrees rise
+    from 1 until the error has risen twice running or is below 1e-12, as far as the samples
+    allow. Fewer than 16 samples are refused.
     """
     if values.size < FEWEST:
         raise ModelError(

@@ -168,7 +168,8 @@ class NonlinearModes(PeriodicMotions):
         """
         self._require_rest("damper_curve")
         loaded = any(one.harmonic == 0 and one.amplitude for one in self.model.forces)
-        if loaded or self.model.problem.laws_not_monotone or not self._slip_forces_scale:
+        scale = all(contact.slips for contact in self.model.contacts)
+        if loaded or self.model.problem.laws_not_monotone or not scale:
             raise ModelError(
                 "damper_curve: displacements do not grow with the slip forces alone, because of "
                 "static loads, or of contacts that open or harden; use ss.damper_curve"
@@ -198,10 +199,6 @@ class NonlinearModes(PeriodicMotions):
         negative = negative_matrix(negative_damping, self.model.structure)
         given = numbers(ratio, "give finite ratios above 0", positive)
         return synthesized_cycles(self, np.asarray(negative), given)
-
-    @property
-    def _slip_forces_scale(self) -> bool:
-        return all(contact.slips for contact in self.model.contacts)
 
     def _require_rest(self, method: str) -> None:
         """Refuse a sector, which has no motion of its own."""

@@ -45,10 +45,6 @@ def _model(model: Model) -> dict[Hashable, object]:
     return _structure_variables(model.structure) | part_variables(model)
 
 
-def _read_model(dataset: Stored) -> Model:
-    return Model(_structure(dataset), *parts_of(dataset))
-
-
 def _bladed(model: Any) -> dict[Hashable, object]:
     disk: BladedDisk = model
     settings = {
@@ -114,7 +110,7 @@ def _read_mistuned(dataset: Stored) -> MistunedDisk:
 
 _Writer: TypeAlias = Callable[[Any], Mapping[Hashable, object]]
 _KINDS: Mapping[str, tuple[_Writer, Callable[[Stored], Model]]] = {
-    "Model": (_model, _read_model),
+    "Model": (_model, lambda dataset: Model(_structure(dataset), *parts_of(dataset))),
     "BladedDisk": (_bladed, _read_bladed),
     "MistunedDisk": (_mistuned, _read_mistuned),
 }

@@ -207,10 +207,6 @@ def _residual(value: object, info: ValidationInfo, names: Sequence[str] = ()) ->
     return value
 
 
-def _residual_or_bounds(value: object, info: ValidationInfo) -> float | str:
-    return _residual(value, info, ["bounds"])
-
-
 def span_of(span: object) -> tuple[float, float]:
     """Return the two ends of a range of frequencies, checked."""
     if not isinstance(span, tuple):
@@ -245,7 +241,7 @@ Residual = Annotated[
 ]
 ResidualOrBounds = Annotated[
     Literal["centred", "from_rest", "bounds"] | float,
-    BeforeValidator(_residual_or_bounds),
+    BeforeValidator(lambda value, info: _residual(value, info, ["bounds"])),
     WithJsonSchema({"anyOf": [{"enum": [*RESIDUALS, "bounds"]}, {"type": ["number", "string"]}]}),
 ]
 Measure = Annotated[Literal["half_range", "max", "fundamental"], ONE_OF]

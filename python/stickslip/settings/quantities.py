@@ -234,10 +234,6 @@ def _quantity(given: Any) -> Quantity:
     )
 
 
-def _spec(quantity: Quantity) -> dict[str, Any]:
-    return {"kind": quantity.kind, **asdict(quantity)}
-
-
 AnyQuantity = Annotated[
     Quantity,
     Or(
@@ -246,5 +242,5 @@ AnyQuantity = Annotated[
         "HighestPeak, Optimum or Backbone",
         _quantity,
     ),
-    PlainSerializer(_spec),
+    PlainSerializer(lambda one: {"kind": one.kind, **asdict(one)}),
 ]

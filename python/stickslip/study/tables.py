@@ -19,11 +19,6 @@ from stickslip.study.disk_table import CouplingTable, DiskTable
 from stickslip.study.matrices import StructureTable
 
 
-def _length_unit(value: object) -> object:
-    # both the micro sign and the Greek letter
-    return "um" if value in ("\u00b5m", "\u03bcm") else value
-
-
 class ForceTable(Table):
     """A harmonic force, amplitude cos(harmonic omega t + phase)."""
 
@@ -78,7 +73,10 @@ class OutputTable(Table):
         "of diagrams over speed or nodal diameter Hz.",
     )
     length_unit: Annotated[
-        Literal["auto", "m", "mm", "um"], ONE_OF, BeforeValidator(_length_unit)
+        Literal["auto", "m", "mm", "um"],
+        ONE_OF,
+        # both the micro sign and the Greek letter
+        BeforeValidator(lambda one: "um" if one in ("\u00b5m", "\u03bcm") else one),
     ] = Field(
         default="auto",
         description="Unit of the amplitudes; auto: that which suits the numbers.",

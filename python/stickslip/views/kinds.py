@@ -94,18 +94,11 @@ class View(ABC, Generic[Kind]):
     def tables(
         self, results: Sequence[tuple[str, Kind]], label: str, dofs: Iterable[str], length_unit: str
     ) -> list[Table]:
-        """Tabulate what matters of results.
+        """Tabulate what matters of results, each with what tells it from the others.
 
-        Parameters
-        ----------
-        results : sequence of (str, Result)
-            Results, each with what tells it from the others.
-        label : str
-            What that is: heading of the first column, which is left out if this is empty.
-        dofs : iterable of str
-            The DOFs to tabulate, as far as a result has them.
-        length_unit : str
-            Unit of the amplitudes; "auto" is that which suits them.
+        What that is heads the first column, which is left out if the label is empty. DOFs are
+        tabulated as far as a result has them; the unit of length "auto" is that which suits the
+        amplitudes.
         """
         shown = list(dofs)
         length_unit = self.length_unit(results, shown, length_unit)
@@ -158,10 +151,7 @@ class View(ABC, Generic[Kind]):
     ) -> Panels:
         """Return the default picture of results, each with its name where there are several.
 
-        Raises
-        ------
-        ModelError
-            If none of them has a picture; single ones without are left out.
+        Single ones without a picture are left out; it is refused if none has one.
         """
         if len(results) == 1:
             return self.panels([results[0][1]], dofs, output)
@@ -201,14 +191,9 @@ def _texts(result: Result, severity: Severity) -> list[str]:
 
 
 def view_of(results: Sequence[Result], omega_unit: str | None = None) -> View[Any]:
-    """Return the view of some results.
+    """Return the view of some results; refused if there is none, or they do not go together.
 
     Tables have frequencies in rpm too where that is the unit, and of a disk the rotor's speed.
-
-    Raises
-    ------
-    ModelError
-        If there is none for a kind, or they are of kinds that are not drawn together.
     """
     for result in results:
         if result.kind not in VIEWS:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,9 +13,6 @@ from stickslip.checks import brief
 from stickslip.errors import ModelError
 from stickslip.model.measurement.measured import Measured, real_numbers
 from stickslip.model.model import ContactRef, Model
-
-if TYPE_CHECKING:
-    pass
 
 _FEWEST = 8
 """Samples of a loop from which its harmonics are known."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,9 +13,6 @@ from stickslip.checks import brief, choice, text
 from stickslip.errors import ModelError
 from stickslip.model.measurement.measured import MEASURES, Measured, above_zero, real_numbers
 from stickslip.model.model import Model
-
-if TYPE_CHECKING:
-    pass
 
 _ENDS = 2
 
