@@ -37,15 +37,15 @@ def chain(n, contacts):
 def press(delay):
     threading.Timer(delay, os.kill, (os.getpid(), signal.SIGINT)).start()
 
-def pressed(analysis, delay=0.3):
+def pressed(analysis, delay=0.3, least=-1.0):
     """What an analysis leaves behind when Ctrl-C is pressed while it runs.
 
-    Without a delay the analysis is given what presses when it has begun to compute.
+    Without a delay the analysis is given what presses when more than the least share is done.
     """
     try:
         if delay is None:
             presses = iter([press])
-            analysis(lambda fraction: next(presses, lambda _: None)(0.05))
+            analysis(lambda done: next(presses, lambda _: None)(0.05) if done > least else None)
         else:
             press(delay)
             analysis()
@@ -73,7 +73,7 @@ ANALYSES = {
     ),
     "damper_curve": (
         "DamperCurve",
-        "ss.damper_curve(big, slip_force=np.geomspace(0.1, 10, 2000), dof='x3')",
+        "ss.damper_curve(big, slip_force=np.geomspace(0.1, 10, 2000), dof='x3', progress=p)",
     ),
     "optimal_damper": ("DamperCurve", "ss.optimal_damper(big, dof='x3', harmonics=15)"),
     "limit_cycles": ("LimitCycles", "ss.limit_cycles(alone, negative, mode=0, harmonics=31)"),
@@ -126,8 +126,9 @@ grid = np.linspace(10, 260, 5000)
 curve = ss.forced_response(chain(40, 10), np.linspace(10, 60, 200), harmonics=5)
 calls = {{{calls}}}
 # These are prepared for a while, in which there is nothing to keep.
-late = ("basin_map", "mistuning_study", "rk4")
-print(json.dumps({{n: pressed(call, None if n in late else 0.3) for n, call in calls.items()}}))
+late = {{"basin_map": -1.0, "mistuning_study": -1.0, "rk4": -1.0, "damper_curve": 0.0}}
+whens = {{n: (None, late[n]) if n in late else (0.3,) for n in calls}}
+print(json.dumps({{n: pressed(call, *whens[n]) for n, call in calls.items()}}))
 """
     left = json.loads(child(code).stdout)
     assert left == {name: kind for name, (kind, _) in ANALYSES.items()}
