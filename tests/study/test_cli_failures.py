@@ -125,11 +125,11 @@ sent = []
 def interrupted(model, *arguments, **options):
     if model.forces[0].amplitude < 10:
         return whole(model, *arguments, **options)
+    # The other level has a thread of its own; on a slow machine this one might end before it.
+    while not os.path.exists("results/beam-1.nc"):
+        time.sleep(0.01)
     told = options["progress"]
     def interrupt(fraction):
-        # The other level has a thread of its own.
-        while not os.path.exists("results/beam-1.nc"):
-            time.sleep(0.01)
         # A second signal, on a slow machine, would end the run at once.
         if fraction > 0 and not sent:
             sent.append(fraction)
