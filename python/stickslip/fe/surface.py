@@ -16,7 +16,7 @@ from stickslip.errors import ModelError
 Places = NDArray[np.int64]
 """Positions of nodes."""
 
-_CORNERS = {3: 3, 4: 4, 6: 3, 8: 4}
+CORNERS = {3: 3, 4: 4, 6: 3, 8: 4}
 """Corners of a face by its number of nodes; the others are middles of its edges, in their order."""
 _A, _B = 0.445948490915965, 0.091576213509771
 _OF_A, _OF_B = 0.111690794839005, 0.054975871827661
@@ -28,21 +28,21 @@ _TRIANGLE = (
 
 def outward(faces: Places, points: Matrix, inside: Matrix) -> Places:
     """Return faces, (m, k), numbered so that their normals point away from the points inside."""
-    middle = points[faces[:, : _CORNERS[faces.shape[1]]]].mean(axis=1)
+    middle = points[faces[:, : CORNERS[faces.shape[1]]]].mean(axis=1)
     inverted = np.einsum("mi,mi->m", area_vectors(faces, points), middle - inside) < 0.0
     return np.where(inverted[:, None], turned(faces), faces)
 
 
 def area_vectors(faces: Places, points: Matrix) -> Matrix:
     """Return the normals of faces with straight edges, as long as their areas, shape (m, 3)."""
-    corners = (0, 1, 2, _CORNERS[faces.shape[1]] - 1)
+    corners = (0, 1, 2, CORNERS[faces.shape[1]] - 1)
     first, second, third, last = (points[faces[:, one]] for one in corners)
     return 0.5 * np.cross(third - first, last - second)
 
 
 def turned(faces: Places) -> Places:
     """Return faces numbered the other way round."""
-    corners = _CORNERS[faces.shape[1]]
+    corners = CORNERS[faces.shape[1]]
     first, around, middles = np.split(faces, [1, corners], axis=1)
     return np.hstack([first, around[:, ::-1], middles[:, ::-1]])
 
@@ -115,7 +115,7 @@ class Surface:
 
         Around their normals faces go along the edge between them in opposite directions.
         """
-        corners = [face[:, : _CORNERS[face.shape[1]]] for face in self.faces]
+        corners = [face[:, : CORNERS[face.shape[1]]] for face in self.faces]
         begin = np.concatenate([one.ravel() for one in corners])
         end = np.concatenate([np.roll(one, -1, axis=1).ravel() for one in corners])
         # Corners of a collapsed face coincide.
@@ -132,7 +132,7 @@ class Surface:
     @cached_property
     def shortest_edge(self) -> float:
         """Least distance of two corners of a face [m]."""
-        corners = [self.points[face[:, : _CORNERS[face.shape[1]]]] for face in self.faces]
+        corners = [self.points[face[:, : CORNERS[face.shape[1]]]] for face in self.faces]
         edges = [np.linalg.norm(one - np.roll(one, 1, axis=1), axis=-1) for one in corners]
         # Corners of a collapsed face coincide.
         return min(float(one[one > 0.0].min(initial=np.inf)) for one in edges)
@@ -147,7 +147,7 @@ class Surface:
             places, weights = _quadrature(face.shape[1])
             values, gradients = _shapes(face.shape[1], places)
             along, across = np.einsum("qdk,mki->dmqi", gradients, self.points[face])
-            shares = values if face.shape[1] == _CORNERS[face.shape[1]] else values**2
+            shares = values if face.shape[1] == CORNERS[face.shape[1]] else values**2
             yield face, shares, np.cross(along, across) * weights[:, None]
 
 
@@ -161,7 +161,7 @@ def _shared(shares: Matrix, sizes: Matrix) -> Matrix:
 
 def _quadrature(nodes: int) -> tuple[Matrix, Matrix]:
     """Return places (q, 2) and weights: exact to degree 4 of triangles, 5 of quadrilaterals."""
-    if _CORNERS[nodes] == 3:
+    if CORNERS[nodes] == 3:
         return np.vstack(_TRIANGLE), np.repeat([_OF_A, _OF_B], 3)
     line, weights = np.polynomial.legendre.leggauss(3)
     return np.stack(np.meshgrid(line, line), axis=-1).reshape(-1, 2), np.outer(
@@ -173,7 +173,7 @@ def _shapes(nodes: int, places: Matrix) -> tuple[Matrix, Matrix]:
     """Return values (q, k) and gradients (q, 2, k) of the shape functions of a face."""
     r, s = places.T
     zero, one = np.zeros_like(r), np.ones_like(r)
-    if _CORNERS[nodes] == 3:
+    if CORNERS[nodes] == 3:
         corner, slopes = _columns([1 - r - s, r, s], [(-one, -one), (one, zero), (zero, one)])
     else:
         ways = [(-1, -1), (1, -1), (1, 1), (-1, 1)]
@@ -181,10 +181,10 @@ def _shapes(nodes: int, places: Matrix) -> tuple[Matrix, Matrix]:
             [(1 + a * r) * (1 + b * s) / 4 for a, b in ways],
             [(a * (1 + b * s) / 4, b * (1 + a * r) / 4) for a, b in ways],
         )
-    if nodes == _CORNERS[nodes]:
+    if nodes == CORNERS[nodes]:
         return corner, slopes
     after = np.roll(np.arange(nodes // 2), -1)
-    if _CORNERS[nodes] == 3:
+    if CORNERS[nodes] == 3:
         middle = 4 * corner * corner[:, after]
         middles = 4 * (corner[:, None] * slopes[:, :, after] + slopes * corner[:, None, after])
     else:

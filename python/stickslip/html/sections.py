@@ -30,7 +30,7 @@ from stickslip.results.diagnostic import Severity
 from stickslip.results.result import Result
 from stickslip.results.store import content_of
 from stickslip.study.tables import OutputTable
-from stickslip.views.kinds import VIEWS, View, cautions, failures, view_of
+from stickslip.views.kinds import VIEWS, View, cautions, failures, texts_of, view_of
 from stickslip.views.picture import Panel
 from stickslip.views.tables import Row, Table, model_rows, tabulated
 
@@ -185,7 +185,7 @@ def _group(
             "facts": [
                 row for row in view.facts(result) if row[0] != "assumed" and row not in known
             ],
-            "assumptions": _said(result, Severity.NOTE),
+            "assumptions": texts_of(result, Severity.NOTE),
             "figures": _figures(view.details(result, shown, output)),
             "settings": _settings(result),
             "effort": _effort(result),
@@ -199,11 +199,6 @@ def _group(
         "models": models,
         "sections": sections,
     }
-
-
-def _said(result: Result, severity: Severity) -> list[str]:
-    """Return the texts of one severity; those of others stand above."""
-    return [one.text for one in result.diagnostics if one.severity is severity]
 
 
 def _together(

@@ -9,12 +9,12 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from numpy.typing import NDArray
 
+from stickslip.fe.surface import CORNERS
 from stickslip.plot.figure import figure
 from stickslip.plot.options import ContactMapOptions
 from stickslip.plot.style import GREY, Prefixed, prefix_of, prefixed, unit_of
 from stickslip.results.contact_map import ContactMap
 
-_CORNERS = {3: 3, 4: 4, 6: 3, 8: 4}
 _LABELS = {
     "pressure": "mean pressure [Pa]",
     "least_pressure": "least pressure [Pa]",
@@ -39,7 +39,7 @@ def contact_map(ax: Axes, /, result: ContactMap, **options: Unpack[ContactMapOpt
     values = np.full(len(surface.labels), np.nan)
     values[result.interface.places] = result[name]
     places, directions = _in_plane(surface.points)
-    corners = [faces[:, : _CORNERS[faces.shape[1]]] for faces in surface.faces]
+    corners = [faces[:, : CORNERS[faces.shape[1]]] for faces in surface.faces]
     shapes = [polygon for faces in corners for polygon in places[faces]]
     colours = np.concatenate([values[faces].mean(axis=1) for faces in surface.faces])
     drawn = PolyCollection(shapes, array=np.ma.masked_invalid(colours), cmap="viridis")

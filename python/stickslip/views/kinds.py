@@ -177,16 +177,17 @@ class View(ABC, Generic[Kind]):
 
 def failures(result: Result) -> list[str]:
     """Word what is missing from a result, one line per cause."""
-    return [*view_of([result]).failures(result), *_texts(result, Severity.FAILURE)]
+    return [*view_of([result]).failures(result), *texts_of(result, Severity.FAILURE)]
 
 
 def cautions(result: Result) -> list[str]:
     """Word what puts the numbers of a result in doubt, one line each."""
     part = ["The run was interrupted: this is what it had computed."] * result.interrupted
-    return part + _texts(result, Severity.CAUTION)
+    return part + texts_of(result, Severity.CAUTION)
 
 
-def _texts(result: Result, severity: Severity) -> list[str]:
+def texts_of(result: Result, severity: Severity) -> list[str]:
+    """Return what is said of a result with one severity."""
     return [one.text for one in result.diagnostics if one.severity is severity]
 
 
