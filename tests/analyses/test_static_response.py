@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
+from stickslip.results.static_response import StaticResponse
 from stickslip.results.status import RestStatus
 
 
@@ -273,3 +274,56 @@ def test_the_least_normal_force_is_below_the_greatest():
         for alone in (False, True):
             found = at_rest.normal_force_range(name, alone=alone)
             assert found == pytest.approx(sorted(forces), rel=1e-9)
+
+
+def pressed(
+    faces: np.ndarray, softer: float, *, mirrored: bool = False, length: float = 1.0
+) -> StaticResponse:
+    """Return a cylinder pressed between two blades, in a mirror or in another unit of length.
+
+    `faces` holds two rows: friction and angle [deg] of each face.
+    """
+    (first, angle), (second, other_angle) = faces[::-1] if mirrored else faces
+    cylinder = ss.CylinderDamper(
+        mass=0.1 / length,
+        friction=(first, second),
+        tangential_stiffness=1e5 / length,
+        normal_stiffness=1e5 * softer / length,
+        angle=(angle, other_angle),
+        load=80.0,
+        cylinder_radius=0.01 * length,
+    )
+    coupling = -1e5 if mirrored else 1e5
+    blades = [
+        ss.Structure(
+            10.0 / length * np.eye(2),
+            np.array([[s, coupling], [coupling, 1.5 * s]]) / length,
+            np.zeros((2, 2)),
+            ["x", "y"],
+        )
+        for s in (1e6, 1.2e6)
+    ]
+    axes = {"left_dofs": ["x", "y"], "right_dofs": ["x", "y"]}
+    model = cylinder.between(*(blades[::-1] if mirrored else blades), **axes)
+    return ss.static_response(model)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_pressed_cylinder_rests_as_in_the_mirror_and_in_other_units(seed: int) -> None:
+    """Both faces slip from the start: turning then has no stiffness, and rounding told how far."""
+    rng = np.random.default_rng(seed)
+    least, more = rng.uniform(0.05, 0.4), rng.uniform(1.1, 2.0)
+    faces = np.column_stack([[least, more * least], rng.uniform(20.0, 50.0, 2)])
+    softer = 10.0 ** rng.uniform(-1.0, 1.0)
+    rest = pressed(faces, softer)
+    mirror = pressed(faces, softer, mirrored=True)
+    longer = pressed(faces, softer, length=1e3)
+    assert mirror.status == rest.status == longer.status == RestStatus.CONVERGED
+    for dof in rest.model.structure.dofs:
+        here = rest.displacement(dof)
+        turned = "rotation" in dof
+        there = longer.displacement(dof) / (1.0 if turned else 1e3)
+        assert there == pytest.approx(here, rel=1e-7, abs=1e-12)
+        if turned:
+            assert abs(here) < 10.0
+            assert mirror.displacement(dof) == pytest.approx(-here, rel=1e-7, abs=1e-12)

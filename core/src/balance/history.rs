@@ -1,7 +1,8 @@
 //! Friction with the history that it has from static loads.
 
+use super::at_rest::RestStatus;
 use super::settings::Settings;
-use super::statics::{static_response, RestStatus};
+use super::statics::static_response;
 use crate::contact::{ContactLaw, Residual};
 use crate::model::Model;
 use crate::Error;

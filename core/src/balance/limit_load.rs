@@ -3,7 +3,8 @@
 //! A body that contacts alone hold slides away where some rigid-body motion exists along which the load
 //! does more work than the contacts take, however far it goes: the kinematic theorem of limit analysis.
 
-use super::statics::{static_response, Loading, RestStatus};
+use super::at_rest::RestStatus;
+use super::statics::{static_response, Loading};
 use crate::model::Model;
 use crate::solve::norm;
 use faer::Mat;

@@ -2,6 +2,7 @@
 //! `U_k = U_k^stuck + G_k Q_k(U)` for every kept harmonic k.
 
 mod accuracy;
+mod at_rest;
 mod attempts;
 mod condensed;
 mod cycle;
@@ -48,6 +49,7 @@ mod unknowns;
 mod without_bound;
 mod work;
 
+pub use at_rest::{AtRest, RestStatus};
 pub(crate) use attempts::is_balanced;
 pub(crate) use cycle::oscillation;
 pub use cycle::{CycleBalance, Onset};
@@ -69,8 +71,8 @@ pub use settings::{
 pub use single_harmonic::single_harmonic;
 pub(crate) use slider_start::{HeldMotion, SliderBalance};
 pub use solution::{AmplitudeBounds, CurveEnd, Point, PointStatus, Solution, Uniqueness};
+pub use statics::static_response;
 pub(crate) use statics::{slip_load, Level, Loading};
-pub use statics::{static_response, AtRest, RestStatus};
 pub(crate) use sweep::{
     branch_piece, check_range, join_branches, join_smooth, seam, seams, smooth_piece, Course, Piece,
 };

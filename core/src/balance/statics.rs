@@ -6,6 +6,7 @@
 //! in it; where one changes its state, or where sliding turns, the path bends, and two halves of the
 //! step differ from the whole. Steps follow that difference.
 
+use super::at_rest::{AtRest, RestStatus};
 use crate::contact::ReturnMapJacobian;
 use crate::model::Model;
 use crate::solve::norm;
@@ -21,45 +22,18 @@ const SHORTEST: f64 = 1e-9;
 /// Most steps: a loading that needs more does not end.
 const MOST_STEPS: usize = 20_000;
 /// Newton iterations per step.
-const ITERATIONS: usize = 40;
+const ITERATIONS: usize = 100;
 /// Change of the displacements, relative to them, at which a step is solved.
 const SOLVED: f64 = 1e-13;
+/// Newton's step over the displacements beyond which a motion has hardly any stiffness, the least share of its
+/// stiffness that a contact then keeps, and the longest step over the displacements.
+const LOOSE: f64 = 1e3;
+const KEPT: f64 = 1e-6;
+const SHORT: f64 = 0.3;
 /// Displacements over those of the stuck structure beyond which nothing holds it.
 pub(super) const FREE: f64 = 1e9;
 /// Steps that go so far, after which a body is taken as free: a single one may be a jump.
 const ADRIFT: usize = 4;
-
-/// How raising the static loads has ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum RestStatus {
-    /// The structure carries its loads.
-    Converged = 0,
-    /// Contacts have let go of a body that nothing else holds.
-    Free = 1,
-    /// No state in equilibrium follows from the one before: contacts jam or let go at once.
-    Stalled = 2,
-    /// The caller has ended the analysis.
-    NotComputed = 3,
-}
-
-/// A structure under its static loads.
-#[derive(Debug, Clone)]
-pub struct AtRest {
-    /// How it was reached; other than converged, the rest holds the last state in equilibrium.
-    pub status: RestStatus,
-    /// Share of the loads that it carries.
-    pub share: f64,
-    /// Displacements of the observed DOFs \[m\].
-    pub displacement: Vec<f64>,
-    /// Relative displacements at the contacts \[m\].
-    pub contact_displacement: Vec<f64>,
-    /// Contact forces as the laws give them \[N\].
-    pub contact_force: Vec<f64>,
-    /// What each law remembers.
-    pub states: Vec<Vec<f64>>,
-    /// Load steps taken.
-    pub steps: usize,
-}
 
 /// A state on the loading path.
 #[derive(Clone)]
@@ -201,13 +175,14 @@ impl<'a> Loading<'a> {
     /// Whether the load that a level adds moves a structure that floats as if nothing held it.
     fn goes_far(&self, level: &Level) -> bool {
         let moved: Vec<f64> = level.u.iter().zip(&self.level.u).map(|(a, b)| a - b).collect();
-        let share = level.share - self.level.share;
         // All frequencies of a large structure take long: they are asked for last.
-        let floats = || {
-            let free = self.model.compliance().free_frequencies();
-            matches!(free, [slow, .., fast] if slow * slow * FREE <= fast * fast)
-        };
-        norm(&moved) > FREE * share * norm(&self.stuck) && floats()
+        norm(&moved) > FREE * (level.share - self.level.share) * norm(&self.stuck) && self.floats()
+    }
+
+    /// Whether nothing but contacts holds the structure in one of its motions.
+    fn floats(&self) -> bool {
+        let free = self.model.compliance().free_frequencies();
+        matches!(free, [slow, .., fast] if slow * slow * FREE <= fast * fast)
     }
 
     /// The level at a share of the load by two steps, and how far it is from that by one.
@@ -226,9 +201,17 @@ impl<'a> Loading<'a> {
         Some((level, error.max(of_forces)))
     }
 
-    /// The equilibrium at a share of the load, by one step from another: Newton's method from where
-    /// all contacts stick on, damped.
+    /// The equilibrium at a share of the load, by one step from another: the next one, or, where contacts are
+    /// next to rigid, one that springs hold.
     fn solve(&self, from: &Level, share: f64) -> Option<Level> {
+        let near = self.newton(from, share, true);
+        near.or_else(|| if self.floats() { None } else { self.newton(from, share, false) })
+    }
+
+    /// Newton's method from where all contacts stick on, damped. Rounding alone tells how far a motion
+    /// without stiffness goes: for the next equilibrium its contacts keep some of theirs, so that it goes a
+    /// short way. The residual may rise at that.
+    fn newton(&self, from: &Level, share: f64, near: bool) -> Option<Level> {
         let size = from.u.len();
         let mut level = Level { share, ..from.clone() };
         let added = (share - from.share).max(0.0);
@@ -237,17 +220,22 @@ impl<'a> Loading<'a> {
         let mut slopes = self.evaluate(from, &mut level, &mut residual);
         let mut before = norm(&residual);
         for _ in 0..ITERATIONS {
-            let newton = self.direction(&slopes, &residual);
-            let length = norm(&newton);
-            let scale = norm(&level.u) + norm(&self.stuck) + norm(&residual);
-            if !length.is_finite() || length > FREE * scale {
+            let mut step = self.direction(&slopes, &residual, 1.0);
+            let (length, scale) = (norm(&step), norm(&level.u) + norm(&residual));
+            if !length.is_finite() || length > FREE * (scale + norm(&self.stuck)) {
                 return None;
             }
+            let loose = near && length > LOOSE * scale;
+            let mut kept = KEPT;
+            while loose && kept < 1.0 && norm(&step) > SHORT * scale {
+                step = self.direction(&slopes, &residual, 1.0 - kept);
+                kept *= 10.0;
+            }
+            let mut damping = if loose { (SHORT * scale / norm(&step)).min(1.0) } else { 1.0 };
             let start = level.u.clone();
-            let mut damping = 1.0;
             loop {
                 for (i, u) in level.u.iter_mut().enumerate() {
-                    *u = start[i] + damping * newton[i];
+                    *u = start[i] + damping * step[i];
                 }
                 slopes = self.evaluate(from, &mut level, &mut residual);
                 let after = norm(&residual);
@@ -255,7 +243,8 @@ impl<'a> Loading<'a> {
                 if solved || size == 0 {
                     return Some(level);
                 }
-                if after < before || after <= SOLVED * self.size(&level.u) || damping < 1e-3 {
+                let falls = after < before || after <= SOLVED * self.size(&level.u);
+                if falls || loose || damping < 1e-3 {
                     before = after;
                     break;
                 }
@@ -313,14 +302,14 @@ impl<'a> Loading<'a> {
     }
 
     /// Newton's direction `dU = −R + G dQ`. The slip loads with a slope alone are unknown, of which
-    /// `(1 − dQ/dU G) dQ = −dQ/dU R`.
-    fn direction(&self, slopes: &[Slope], residual: &[f64]) -> Vec<f64> {
+    /// `(1 − dQ/dU G) dQ = −dQ/dU R`. A share of the slopes below 1 leaves all contacts some stiffness.
+    fn direction(&self, slopes: &[Slope], residual: &[f64], share: f64) -> Vec<f64> {
         let count = slopes.len();
         let matrix = Mat::from_fn(count, count, |i, j| {
             let column = self.receptance.col(slopes[j].row);
-            f64::from(u8::from(i == j)) - slopes[i].times(|k| column[k])
+            f64::from(u8::from(i == j)) - share * slopes[i].times(|k| column[k])
         });
-        let mut loads = Mat::from_fn(count, 1, |i, _| -slopes[i].times(|k| residual[k]));
+        let mut loads = Mat::from_fn(count, 1, |i, _| -share * slopes[i].times(|k| residual[k]));
         if count > 0 {
             matrix.partial_piv_lu().solve_in_place(&mut loads);
         }
@@ -335,8 +324,7 @@ impl<'a> Loading<'a> {
     fn failure(&self) -> RestStatus {
         let size = self.level.u.len();
         let (mut level, mut residual) = (self.level.clone(), vec![0.0; size]);
-        let ahead: Vec<f64> = self.stuck.iter().map(|u| SHORTEST * u).collect();
-        level.u.iter_mut().zip(&ahead).for_each(|(u, by)| *u += by);
+        level.u.iter_mut().zip(&self.stuck).for_each(|(u, stuck)| *u += SHORTEST * stuck);
         let mut matrix = Mat::<f64>::identity(size, size);
         for slope in self.evaluate(&self.level, &mut level, &mut residual) {
             let answer = self.receptance.col(slope.row);
