@@ -94,6 +94,8 @@ fn swept<'py>(
     columns.responses(points.clone(), observed, model.compliance().contacts())?;
     columns.tell("end", end_name(found.end))?;
     columns.tell("cut", found.cut)?;
+    let astray = points.clone().enumerate().filter(|(_, point)| point.astray);
+    columns.tell("astray", astray.map(|(position, _)| position).collect::<Vec<_>>())?;
     curve(columns, points, found.half_wave, found.interrupted, &found.profile)
 }
 

@@ -88,6 +88,7 @@ class Solution:
     interrupted: bool
     end: str
     cut: int
+    astray: list[int]
     timings: dict[str, float]
     counters: dict[str, int]
 

@@ -20,6 +20,7 @@ use crate::fourier::{Harmonics, SampleTable};
 use crate::model::Model;
 use crate::solve::{norm, System as _};
 use crate::structure::Quantity;
+use crate::timing::Profile;
 use crate::Error;
 use faer::c64;
 
@@ -163,8 +164,22 @@ pub(super) struct Estimate {
     pub(super) took_two: bool,
 }
 
-/// The estimate of a solution; `solved` are the equations that were solved, if they are at hand. Nothing
-/// if the analysis is to end.
+impl Estimate {
+    /// Of the same change of every observed DOF.
+    fn of(error: f64, observed: usize) -> Self {
+        let errors = vec![error; observed];
+        Self {
+            first: errors.clone(),
+            errors,
+            keeps_states: error.is_finite(),
+            ended_in_state: false,
+            took_two: false,
+        }
+    }
+}
+
+/// The estimate of a solution, whose work `profile` is told; `solved` are the equations that were solved, if they
+/// are at hand. Nothing if the analysis is to end.
 #[allow(clippy::too_many_arguments)]
 pub(super) fn estimate(
     model: &Model,
@@ -176,45 +191,47 @@ pub(super) fn estimate(
     solved: Option<&Condensed<'_>>,
     extension: &Extension,
     interrupted: &dyn Fn() -> bool,
+    profile: &mut Profile,
 ) -> Result<Option<Estimate>, Error> {
-    let [zero, infinite] = [0.0, f64::INFINITY].map(|error| vec![error; observe.len()]);
-    let infinite = Ok(Some(Estimate {
-        first: infinite.clone(),
-        errors: infinite,
-        keeps_states: false,
-        ended_in_state: false,
-        took_two: false,
-    }));
     let mut extended = Condensed::new(model, table, residual, false);
     extended.watch(interrupted);
     if extended.set_omega_beside(point.omega, solved).is_err() {
-        return infinite;
+        return Ok(Some(Estimate::of(f64::INFINITY, observe.len())));
     }
     if let Some(solved) = solved {
         extended.begin_beside(solved, None);
     }
+    let found = of_extended(&mut extended, solution, observe, point, extension);
+    profile.work += extended.profile.work;
+    found
+}
+
+/// The same of extended equations at its frequency.
+fn of_extended(
+    extended: &mut Condensed<'_>,
+    solution: &Unknowns,
+    observe: &[usize],
+    point: &Point,
+    extension: &Extension,
+) -> Result<Option<Estimate>, Error> {
+    let table = extended.table;
     let mut x = solution.recast(table.harmonics());
     let (mut defect, mut step) = (vec![0.0; x.len()], vec![0.0; x.len()]);
     extended.residual(&x, &mut defect);
-    let mut found = Estimate {
-        errors: zero.clone(),
-        first: zero,
-        keeps_states: true,
-        ended_in_state: false,
-        took_two: false,
-    };
+    let mut found = Estimate::of(0.0, observe.len());
     for last in [false, true] {
         if extended.interrupted() {
             return Ok(None);
         }
         if !extended.solve(&defect, &mut step) {
-            return if extended.interrupted() { Ok(None) } else { infinite };
+            let lost = Estimate::of(f64::INFINITY, observe.len());
+            return Ok(if extended.interrupted() { None } else { Some(lost) });
         }
         step.iter_mut().for_each(|s| *s = -*s);
         let mut slip_load = extended.slip_load();
         extended.add_tangent_product(&step, &mut slip_load);
         x.iter_mut().zip(&step).for_each(|(x, s)| *x += s);
-        let changes = changes(&extended, &x, &slip_load, observe, point)?;
+        let changes = changes(extended, &x, &slip_load, observe, point)?;
         found.took_two = last;
         if last {
             let trusted = if found.keeps_states { TRUSTED } else { f64::INFINITY };
@@ -233,10 +250,10 @@ pub(super) fn estimate(
             }
             Steps::Two => {}
         }
-        let slipped = slipping(&extended);
+        let slipped = slipping(extended);
         let before = by_point(&defect, table);
         extended.residual(&x, &mut defect);
-        found.keeps_states = slipped == slipping(&extended);
+        found.keeps_states = slipped == slipping(extended);
         let mut after = by_point(&defect, table).into_iter().zip(before);
         if after.all(|(after, before)| after <= UNEXPLAINED * before) {
             break;

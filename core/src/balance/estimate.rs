@@ -157,8 +157,10 @@ impl ForcedBalance<'_> {
         let residual = self.settings.residual;
         let ask = self.interruption();
         let observe = self.observe;
-        let found =
-            estimate(&model, &table, residual, solution, observe, point, solved, &extension, &ask)?;
+        let profile = &mut self.profile;
+        let found = estimate(
+            &model, &table, residual, solution, observe, point, solved, &extension, &ask, profile,
+        )?;
         let Some(mut found) = found else {
             point.error_estimate = vec![f64::NAN; observe.len()];
             return Ok(None);

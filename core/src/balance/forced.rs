@@ -8,6 +8,7 @@ use super::resolution_control::{Level, ResolutionControl};
 use super::scale::Scale;
 use super::settings::{Resolution, Settings};
 use super::solution::{Point, PointStatus};
+use super::sweep::Looks;
 use super::tangent::Tangent;
 use super::unknowns::Unknowns;
 use super::{ExactOrbits, Kept, Progress};
@@ -37,6 +38,8 @@ pub struct ForcedBalance<'a> {
     pub(super) estimated: bool,
     /// The tangent at the last point of a sweep whose branch was asked for.
     pub(super) tangent: Option<Tangent>,
+    /// The work of looks between the points of a sweep.
+    pub(super) looks: Looks,
     progress: &'a Progress<'a>,
     pub(super) kept: Option<&'a Kept<Point>>,
     /// What the first point of a sweep begins with, if anything is known beforehand.
@@ -119,6 +122,7 @@ impl<'a> ForcedBalance<'a> {
             scale: Scale::default(),
             estimated: true,
             tangent: None,
+            looks: Looks::default(),
             progress: &|_| true,
             kept: None,
             start: None,

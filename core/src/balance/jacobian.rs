@@ -126,6 +126,7 @@ impl Condensed<'_> {
                 let answer = |q: &[f64], out: &mut [f64]| self.add_response(q, out);
                 let solved = factors.solve_bordered(loads, answer, &border, right);
                 self.profile.factorisations += 1;
+                self.profile.work += self.work_of_factors();
                 solved
             }
             Linear::Modal(orders) => {

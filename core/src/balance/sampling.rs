@@ -64,6 +64,7 @@ pub(super) fn sampling_errors(
     let apart = TAU / finer_than(point.samples.unwrap_or(1)) as f64;
     fine.begin_beside(solved, Some(UNFELT * apart * apart));
     fine.value(x, &mut defect);
+    solved.profile.work += fine.profile.work;
     let slips = |load: &[f64]| load.iter().any(|q| *q != 0.0);
     let mut slip_load = fine.slip_load();
     if !slips(&slip_load) && !slips(&solved.slip_load()) {

@@ -138,6 +138,8 @@ pub struct Point {
     pub fold: bool,
     /// Whether the sweep has come here from another branch.
     pub jump: bool,
+    /// Whether it is not known that it lies on the branch of the point before.
+    pub astray: bool,
     /// Whether a further branch begins here, which the curve before does not come by.
     pub further: bool,
     /// Whether the motion is stable, if that is decided.
@@ -208,6 +210,7 @@ impl Point {
             ],
             fold: false,
             jump: false,
+            astray: false,
             further: false,
             stable: None,
             bounds: None,

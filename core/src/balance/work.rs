@@ -23,7 +23,7 @@ impl Condensed<'_> {
     pub(super) fn work_of_laws(&self, loads: &[SlipLoad], tangent: bool) -> f64 {
         let slots = self.table.harmonics().slots();
         let laws = self.model.laws().iter().zip(loads);
-        laws.map(|(law, load)| of_law(&**law, slots, load.active, tangent)).sum()
+        laws.map(|(law, load)| of_law(&**law, slots, load, tangent)).sum()
     }
 
     /// Of a factorisation of the equations of all points that yield \[ns\].
@@ -32,18 +32,22 @@ impl Condensed<'_> {
     }
 }
 
-/// Of a law in so many coefficients per component \[ns\].
-fn of_law(law: &dyn ContactLaw, slots: usize, active: bool, tangent: bool) -> f64 {
+/// Of a law in so many coefficients per component, and of the rounds of its march \[ns\].
+fn of_law(law: &dyn ContactLaw, slots: usize, load: &SlipLoad, tangent: bool) -> f64 {
     let Some(form) = law.closed_form() else { return 0.0 };
     let resolved = form.resolves();
     if resolved == usize::MAX {
-        return form.effort(slots, active && tangent);
+        return form.effort(slots, load.active && tangent);
     }
     let components = law.displacements() as f64;
     let coefficients = components * slots as f64;
-    let rows = if active && tangent { components } else { 0.0 };
+    let rows = if load.active && tangent { components } else { 0.0 };
     let samples = 2.0 * (resolved as f64 + 1.0);
-    let steps = (1.0 + rows) * (PER_SAMPLE + PER_PRODUCT * coefficients);
+    let rounds = load.rounds.max(1) as f64;
+    // What repeats tells its tangent in one round.
+    let derived = if load.repeated.is_some() { 1.0 } else { rounds };
+    let values = PER_PRODUCT * coefficients + rounds * PER_SAMPLE;
+    let steps = values + derived * rows * (PER_SAMPLE + PER_PRODUCT * coefficients);
     samples * (steps + PER_PROJECTION * rows / components * coefficients.powi(2))
 }
 
@@ -88,11 +92,11 @@ impl ForcedBalance<'_> {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
-    use crate::balance::settings::Settings;
+    use crate::balance::settings::{Evaluation, HarmonicChoice, SampleChoice, Settings};
     use crate::balance::solution::{Point, PointStatus};
     use crate::balance::unknowns::Unknowns;
     use crate::balance::ExactOrbits;
-    use crate::contact::Cubic;
+    use crate::contact::{Aft, BoucWen, Cubic};
     use crate::model::{Contact, Model};
     use crate::structure::{HarmonicLoad, Structure};
     use faer::{c64, mat, Mat};
@@ -155,6 +159,35 @@ mod tests {
         let none = balance().granting(1.0).solve(0.7, None).unwrap();
         assert_eq!(none.status, PointStatus::WorkLimit);
         assert!(!none.is_solved());
+    }
+
+    /// So are error estimates: those of the harmonics, and those of the samples.
+    #[test]
+    fn estimates_are_paid_for() {
+        let model = model();
+        for evaluation in [Evaluation::Direct, Evaluation::Marched(SampleChoice::Fixed(64))] {
+            let harmonics = HarmonicChoice::Fixed(5);
+            let settings = Settings { harmonics, evaluation, ..Settings::default() };
+            let taken = |observe: &[usize]| {
+                let mut balance = ForcedBalance::new(&model, settings, observe).unwrap();
+                assert!(balance.solve(0.7, None).unwrap().is_solved());
+                balance.profile.work
+            };
+            assert!(taken(&[0]) > 1.2 * taken(&[]));
+        }
+    }
+
+    /// A march is paid for by its rounds.
+    #[test]
+    fn rounds_are_paid_for() {
+        let law = BoucWen::new(1.0, 1.0, 1.5, 0.6).unwrap();
+        let law = Aft::new(Box::new(law), 64).unwrap();
+        let of = |rounds: usize| {
+            let load = SlipLoad { rounds, active: true, ..SlipLoad::default() };
+            [false, true].map(|tangent| of_law(&law, 11, &load, tangent))
+        };
+        let ([value, tangent], [values, tangents]) = (of(1), of(50));
+        assert!(values > 20.0 * value && tangents > 40.0 * tangent);
     }
 
     /// A search is on the account of the point, and hears what is left of it.

@@ -41,6 +41,8 @@ pub struct SlipLoad {
     /// The state that a march has repeated, if it is the same whatever the march begins with; the next one
     /// begins with it.
     pub repeated: Option<Repeated>,
+    /// Rounds of a march until its state has repeated.
+    pub rounds: usize,
 }
 
 impl SlipLoad {
@@ -57,6 +59,7 @@ impl SlipLoad {
             self.tangent.resize(size * size, 0.0);
         }
         self.active = false;
+        self.rounds = 0;
     }
 
     /// Gives a tangent of zeros its room.

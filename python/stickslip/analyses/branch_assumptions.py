@@ -33,6 +33,7 @@ def branch_assumptions(
             unstable > 0 and told("unstable", points=unstable, _solved=int(arrays.solved.sum())),
             unresolved > 0 and told("stability-undecided/points", points=unresolved),
             _jumps(arrays),
+            _astray(arrays, solution.astray),
             _further(arrays, solution.cut),
             solution.end in _ENDS
             and told(
@@ -50,16 +51,26 @@ def _jumps(arrays: Arrays) -> Diagnostic | None:
     jumps = np.flatnonzero(arrays.jump)
     if not jumps.size:
         return None
-    before, after = arrays.omega[jumps[0] - 1], arrays.omega[jumps[0]]
     more = f", the first of {jumps.size} jumps" if jumps.size > 1 else ""
-    return told(
-        "jump",
-        low=float(min(before, after)),
-        high=float(max(before, after)),
-        jumps=int(jumps.size),
-        _direction="upward" if after > before else "downward",
-        _more=more,
-    )
+    return told("jump", jumps=int(jumps.size), _more=more, **_way(arrays, jumps[0]))
+
+
+def _astray(arrays: Arrays, points: list[int]) -> Diagnostic | None:
+    """Name the first step of a sweep that may have left the branch, and how many follow."""
+    if not points:
+        return None
+    more = f", the first of {len(points)} such steps," if len(points) > 1 else ""
+    return told("branch-unknown", steps=len(points), _more=more, **_way(arrays, points[0]))
+
+
+def _way(arrays: Arrays, position: int) -> dict[str, float | str]:
+    """Say where a step of a sweep lies that leads to a point."""
+    before, after = arrays.omega[position - 1], arrays.omega[position]
+    return {
+        "low": float(min(before, after)),
+        "high": float(max(before, after)),
+        "_direction": "upward" if after > before else "downward",
+    }
 
 
 def _further(arrays: Arrays, cut: int) -> Diagnostic | None:

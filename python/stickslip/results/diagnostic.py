@@ -39,8 +39,8 @@ _CODES = {
         truncation harmonics-limit law-not-monotone undamped-motion negative-damping coarse-steps
         negative-stiffness overdamped wave-damping phase-unit mistuning-unit friction-unit
         angle-unit two-frequencies no-tolerance forces-left-out peak-at-edge optimum-at-bound
-        points-limit no-turn branch-jumps stability-unknown jump further-branches free-flight
-        internal-resonance not-determined tied at-bound other-minimum misfit-above-noise
+        points-limit no-turn branch-jumps stability-unknown jump branch-unknown further-branches
+        free-flight internal-resonance not-determined tied at-bound other-minimum misfit-above-noise
         cycles-differ values-missed rigid-contacts
     """,
     Severity.FAILURE: """

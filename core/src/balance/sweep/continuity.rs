@@ -6,6 +6,9 @@
 //! points between the two divide it, there where the tangents meet, until they leave little of it
 //! unexplained. What is left is followed by arclength, to where the curve first meets the new
 //! frequency: that solution is taken. If the curve has turned back before, the sweep jumps.
+//!
+//! All that takes no more work than a multiple of what the points of the sweep have taken themselves. Of a point
+//! that it does not suffice for it is not known whether it lies on the branch, which the point says.
 
 use super::branch::STEPS;
 use super::forced_curve::ForcedCurve;
@@ -41,6 +44,27 @@ const BETWEEN: NewtonSettings = NewtonSettings { tolerance: 1e-7, max_iterations
 const MOST: usize = 150;
 /// Distance of two solutions that are the same.
 const SAME: f64 = 1e-6;
+/// Work that looks between points may take over that of the points so far: tangents take about as much as the
+/// points, a curve that is followed some fifty times as much as one of them; …
+const SHARE: f64 = 4.0;
+/// … unless that is less than so much \[ns\].
+const LITTLE: f64 = 1e9;
+
+/// The work of a sweep \[ns\].
+#[derive(Default)]
+pub(in crate::balance) struct Looks {
+    /// Of its points.
+    points: f64,
+    /// Of looks between them.
+    taken: f64,
+}
+
+impl Looks {
+    /// What is left of what looks may take.
+    fn left(&self) -> f64 {
+        (SHARE * self.points).max(LITTLE) - self.taken
+    }
+}
 
 /// Where a branch leads.
 enum Reached {
@@ -54,8 +78,13 @@ enum Reached {
 }
 
 impl ForcedBalance<'_> {
+    /// Lets looks between points take a multiple of what has been done since so much work had been.
+    pub(super) fn earn_looks(&mut self, before: f64) {
+        self.looks.points += self.profile.work - before;
+    }
+
     /// Replaces a new point by that of the branch of the last one if Newton's method has left it or
-    /// found none, and says so of a point that lies behind a turn. `guess` is what the new point was
+    /// found none, and says so of a point that lies behind a turn, or that may. `guess` is what the new point was
     /// found from. A point whose branch is not known because the analysis is to end is none.
     pub(super) fn stay_on_branch(
         &mut self,
@@ -77,15 +106,23 @@ impl ForcedBalance<'_> {
         if point.is_solved() && foretold(last, guess, point) {
             return Ok(());
         }
-        match self.reached(last, point)? {
+        let before = self.profile.work;
+        let reached = self.reached(last, point, before + self.looks.left())?;
+        self.looks.taken += self.profile.work - before;
+        match reached {
             Reached::Other(start, turned) => {
+                let before = self.profile.work;
                 let other = self.solve(point.omega, Some(&start))?;
+                self.earn_looks(before);
                 if other.is_solved() {
                     *point = other;
                 }
                 point.jump = turned && point.is_solved();
             }
-            Reached::Lost(turned) => point.jump = turned && point.is_solved(),
+            Reached::Lost(turned) => {
+                point.jump = turned && point.is_solved();
+                point.astray = !turned && point.is_solved();
+            }
             Reached::Same => {}
         }
         if self.is_ended() {
@@ -94,7 +131,8 @@ impl ForcedBalance<'_> {
         Ok(())
     }
 
-    fn reached(&mut self, last: &Point, point: &Point) -> Result<Reached, Error> {
+    /// Where the branch of the last point leads, as far as that is known by when all work is so much.
+    fn reached(&mut self, last: &Point, point: &Point, end: f64) -> Result<Reached, Error> {
         let solved = point.is_solved();
         let finer = last.resolution().or_finer(point.resolution());
         let resolution = if solved { finer } else { last.resolution() };
@@ -103,14 +141,14 @@ impl ForcedBalance<'_> {
         };
         let (from, to) = ((known, last.omega), found.map(|found| (found, point.omega)));
         if let (Some(coarse), Some(to)) = (self.coarser(resolution), to) {
-            if let Told::Whole = self.told(coarse, from, to)? {
+            if let Told::Whole = self.told(coarse, from, to, end)? {
                 return Ok(Reached::Same);
             }
         }
         let table = self.table(resolution.harmonics);
         let mut start = at(table.harmonics(), from);
         if let Some(to) = to {
-            match self.told(resolution, from, to)? {
+            match self.told(resolution, from, to, end)? {
                 Told::Whole => return Ok(Reached::Same),
                 Told::UpTo(reached) => start = reached,
                 Told::Nothing => {}
@@ -120,6 +158,7 @@ impl ForcedBalance<'_> {
         let model = self.evaluated(resolution.samples)?;
         let ask = self.interruption();
         let mut curve = ForcedCurve::new(model, &table, self.settings.residual, &ask);
+        curve.granted = end - self.profile.work;
         let reached = followed(&mut curve, &start, to.as_deref(), point.omega);
         self.add_profile(&curve.profile);
         Ok(reached)
@@ -132,12 +171,13 @@ impl ForcedBalance<'_> {
         resolution: Resolution,
         from: (&Unknowns, f64),
         to: (&Unknowns, f64),
+        end: f64,
     ) -> Result<Told, Error> {
         let table = self.table(resolution.harmonics);
         let model = self.evaluated(resolution.samples)?;
-        let residual = self.settings.residual;
-        let mut way =
-            Way { model: &model, table: &table, residual, resolution, profile: Profile::default() };
+        let (residual, granted) = (self.settings.residual, end - self.profile.work);
+        let profile = Profile::default();
+        let mut way = Way { model: &model, table: &table, residual, resolution, granted, profile };
         let known = self.tangent.take().filter(|known| known.is(resolution, from.1));
         let fewer = |of: &Unknowns| of.harmonics.highest() > resolution.harmonics;
         let cut = fewer(from.0) || fewer(to.0);
@@ -201,13 +241,18 @@ struct Way<'a> {
     table: &'a SampleTable,
     residual: Residual,
     resolution: Resolution,
+    /// Work that it may take.
+    granted: f64,
     profile: Profile,
 }
 
 impl Way<'_> {
+    /// The equations at a frequency; nothing once all work is done.
     fn equations(&self, omega: f64) -> Option<Condensed<'_>> {
+        let granted = self.granted - self.profile.work;
         let mut equations = Condensed::of_curve(self.model.clone(), self.table, self.residual);
-        equations.set_omega(omega).ok()?;
+        equations.granted = granted;
+        equations.set_omega(omega).ok().filter(|()| granted > 0.0)?;
         Some(equations)
     }
 
@@ -289,4 +334,49 @@ fn followed(curve: &mut ForcedCurve<'_>, from: &[f64], to: Option<&[f64]>, end: 
         before.clone_from(&walk.point);
     }
     Reached::Lost(turned)
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::balance::settings::{HarmonicChoice, Settings};
+    use crate::balance::sweep::sweep;
+    use crate::contact::Stop;
+    use crate::model::{Contact, Model};
+    use crate::structure::{HarmonicLoad, Structure};
+    use faer::{c64, mat};
+
+    /// Looks take a multiple of what the points have taken, and little in any case.
+    #[test]
+    fn looks_are_earned_by_points() {
+        let left = |points: f64, taken: f64| Looks { points, taken }.left();
+        assert_eq!(left(0.0, 0.0), LITTLE);
+        assert_eq!(left(LITTLE, 0.0), SHARE * LITTLE);
+        assert!(left(LITTLE, SHARE * LITTLE) <= 0.0);
+    }
+
+    /// Where all work is done a sweep goes on with its points alone, and tells which it has not looked at.
+    #[test]
+    fn a_jump_that_is_not_looked_for_is_not_known() {
+        let [mass, damping, stiffness] = [1.0, 0.05, 1.0].map(|value| mat![[value]]);
+        let structure = Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref());
+        let law = Box::new(Stop::new(20.0, 1.0).unwrap());
+        let load = HarmonicLoad { harmonic: 1, amplitude: vec![c64::new(0.2, 0.0)] };
+        let contacts = vec![Contact { law, rows: mat![[1.0]] }];
+        let model = Model::new(structure.unwrap(), contacts, vec![load]).unwrap();
+        let omega: Vec<f64> = (0..113).map(|i| 0.4 + 0.025 * f64::from(i)).collect();
+        let told = |taken: f64| {
+            let settings = Settings { harmonics: HarmonicChoice::Fixed(5), ..Settings::default() };
+            let mut balance = ForcedBalance::new(&model, settings, &[0]).unwrap();
+            balance.looks.taken = taken;
+            let found = sweep(balance, &omega).unwrap();
+            assert!(found.points.iter().all(|point| point.is_solved()));
+            let count = |of: fn(&Point) -> bool| found.points.iter().filter(|p| of(p)).count();
+            (found.profile.work, count(|point| point.jump), count(|point| point.astray))
+        };
+        let ((whole, jumps, _), (work, missed, astray)) = (told(0.0), told(LITTLE));
+        assert_eq!((jumps, missed), (1, 0));
+        assert!(astray > 0 && work < 0.7 * whole, "{astray}: {work:e} {whole:e}");
+    }
 }

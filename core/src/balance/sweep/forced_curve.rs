@@ -22,8 +22,10 @@ pub(super) struct ForcedCurve<'a> {
     /// Size of the last accepted motion.
     size: f64,
     pub(super) profile: Profile,
-    /// Evaluations after which it asks to end.
+    /// Evaluations after which it asks to end, …
     pub(super) affordable: usize,
+    /// … and work.
+    pub(super) granted: f64,
 }
 
 struct Evaluation<'a> {
@@ -51,12 +53,13 @@ impl<'a> ForcedCurve<'a> {
             size: 1.0,
             profile: Profile::default(),
             affordable: usize::MAX,
+            granted: f64::INFINITY,
         }
     }
 
-    /// Whether it has taken all evaluations that it may.
+    /// Whether it has taken all evaluations, or all work, that it may.
     pub(super) fn is_spent(&self) -> bool {
-        self.profile.evaluations >= self.affordable
+        self.profile.evaluations >= self.affordable || self.profile.work >= self.granted
     }
 
     /// A point in the unknowns of this curve.
@@ -83,6 +86,9 @@ impl<'a> ForcedCurve<'a> {
 
     fn evaluate(&mut self, z: &[f64]) -> Option<&Evaluation<'a>> {
         if self.at.as_ref().is_none_or(|at| at.z != z) {
+            if let Some(last) = self.at.take() {
+                self.profile.add(&last.equations.profile);
+            }
             self.at = self.evaluated(z);
         }
         self.at.as_ref()
@@ -203,6 +209,26 @@ mod tests {
         let amplitude = vec![c64::new(4.0, 0.8), c64::new(-1.2, 0.5), c64::new(2.0, -0.3)];
         let load = HarmonicLoad { harmonic: 1, amplitude };
         Model::new(structure, contacts, vec![load]).unwrap()
+    }
+
+    /// A solution is paid for as a factorisation of the points that yield.
+    #[test]
+    fn bordered_equations_are_paid_for() {
+        let model = model();
+        let table = SampleTable::new(Harmonics::new(5, false));
+        let ask = || false;
+        let mut curve = ForcedCurve::new(Evaluated::Given(&model), &table, Residual::Centred, &ask);
+        let size = curve.unknowns();
+        let mut z: Vec<f64> = (0..size).map(|i| 0.03 * (1.0 + i as f64).sin()).collect();
+        z[size - 1] = 9.0;
+        let weights = curve.weights(&z);
+        curve.residual(&z, &mut vec![0.0; size - 1]);
+        let before = curve.profile.work;
+        curve.solve_bordered(&z, &weights, &vec![1.0; size], &weights).unwrap();
+        let taken = curve.profile.work - before;
+        let (equations, _) = curve.equations(&z).unwrap();
+        let paid = equations.work_of_factors();
+        assert!(paid > 0.0 && (taken / paid - 1.0).abs() < 1e-9, "{taken} {paid}");
     }
 
     /// The equations in the slip loads have the solution and the orientation of those in the

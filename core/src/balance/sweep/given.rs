@@ -34,11 +34,13 @@ pub(crate) fn sweep_with<'a>(
         ForcedBalance::report,
         |balance, points, frequency| {
             let guess = predict(points, frequency).or_else(|| balance.start.take());
+            let before = balance.profile.work;
             let mut point = solve(balance, frequency, guess.as_ref())?;
             let misled = points.is_empty() && guess.is_some() && !point.is_solved();
             if misled && point.status != PointStatus::NotComputed {
                 point = solve(balance, frequency, None)?;
             }
+            balance.earn_looks(before);
             if let Some(last) = points.last().filter(|_| !balance.model.is_monotone()) {
                 balance.stay_on_branch(last, guess.as_ref(), &mut point)?;
             }

@@ -66,6 +66,7 @@ impl<L: Deref<Target: ContactLaw>> HarmonicForce for Aft<L> {
             out.value.iter_mut().zip(&own.value).for_each(|(sum, own)| *sum += own);
             out.tangent.iter_mut().zip(&own.tangent).for_each(|(sum, own)| *sum += own);
             out.active |= own.active;
+            out.rounds += own.rounds;
         }
         if self.is_sum() {
             return;
@@ -102,6 +103,7 @@ impl<L: Deref<Target: ContactLaw>> HarmonicForce for Aft<L> {
             return keep(lost, harmonics, tangent, out);
         }
         let round = self.march(&samples, &begun);
+        out.rounds = round.restarts.len();
         if !round.slipped {
             // What a law holds without displacement, as behind a gap, is all there is.
             let stiffness = self.law.stiffness();
