@@ -99,6 +99,34 @@ def test_jumps_whose_end_is_far_along_the_curve_are_told():
     assert sweep.peak("x").amplitude <= curve.peak("x").amplitude
 
 
+def test_steps_that_are_too_coarse_to_be_followed_are_told():
+    """Between motions far apart it is not known whether the branch is left; close ones tell."""
+    structure = ss.Structure(np.eye(2), 1e4 * np.eye(2), np.eye(2), ["x", "z"])
+    plane = ss.Coulomb(
+        ["x", "z"],
+        normal=[0.0, 1.0],
+        friction=0.3,
+        tangential_stiffness=2e4,
+        normal_stiffness=3e4,
+        preload=1.0,
+    )
+    model = ss.Model(structure, [plane], [ss.Force("x", 20.0), ss.Force("z", 10.0, phase=1.0)])
+
+    def told(points):
+        sweep = ss.forced_response(model, np.linspace(60, 200, points), 5, stability=False)
+        assert all(status is ss.Status.CONVERGED for status in sweep.status)
+        found = (one for one in sweep.diagnostics if one.code in ("jump", "branch-unknown"))
+        return sweep.omega, {one.code: one for one in found}
+
+    omega, coarse = told(4)
+    (unknown,) = coarse.values()
+    assert unknown.code == "branch-unknown"
+    assert unknown.severity == "caution"
+    assert unknown.data == {"steps": 1, "low": omega[1], "high": omega[2]}
+    _, fine = told(57)
+    assert list(fine) == ["jump"]
+
+
 def state_of(frf, index):
     orders = np.arange(frf.coefficients("x0").shape[1])
     series = np.stack([frf.coefficients(dof)[index] for dof in frf.dofs])

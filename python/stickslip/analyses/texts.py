@@ -242,9 +242,10 @@ TEXTS = {
     "unstable": "{points} of {_solved} motions are unstable: a disturbance leads away from them.",
     "jump": "The {_direction} sweep jumps to another branch between omega = {low:.6g} and "
     "{high:.6g} rad/s{_more}; a range, omega=(from, to), follows the branch around its fold.",
-    "branch-unknown": "Whether the {_direction} sweep stays on its branch between omega = {low:.6g} "
-    "and {high:.6g} rad/s{_more} is not known: the way from one motion to the other is too long. "
-    "Give frequencies closer to each other; a range, omega=(from, to), follows the branch.",
+    "branch-unknown": "Whether the {_direction} sweep stays on its branch between omega = "
+    "{low:.6g} and {high:.6g} rad/s{_more} is not known: the way from one motion to the other is "
+    "too long. Give frequencies closer to each other; a range, omega=(from, to), follows the "
+    "branch.",
     "further-branches": "{_branches} found beside the branch that begins at the end of the range, "
     "from other starts: {_first} from {low:.6g} to {high:.6g} rad/s.{_cut} There may be more.",
     "branch-end/returned": "The branch that begins at omega = {_start:.6g} rad/s comes back to "

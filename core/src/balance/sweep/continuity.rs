@@ -12,6 +12,7 @@
 
 use super::branch::STEPS;
 use super::forced_curve::ForcedCurve;
+use super::further::LITTLE;
 use crate::balance::condensed::Condensed;
 use crate::balance::evaluation::Evaluated;
 use crate::balance::forced::ForcedBalance;
@@ -45,10 +46,8 @@ const MOST: usize = 150;
 /// Distance of two solutions that are the same.
 const SAME: f64 = 1e-6;
 /// Work that looks between points may take over that of the points so far: tangents take about as much as the
-/// points, a curve that is followed some fifty times as much as one of them; …
+/// points, a curve that is followed some fifty times as much as one of them. Little is granted in any case.
 const SHARE: f64 = 4.0;
-/// … unless that is less than so much \[ns\].
-const LITTLE: f64 = 1e9;
 
 /// The work of a sweep \[ns\].
 #[derive(Default)]

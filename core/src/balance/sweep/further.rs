@@ -26,7 +26,7 @@ const LOOKS: [u8; 9] = [0, 8, 4, 2, 6, 1, 3, 5, 7];
 /// … or this number over that of the unknowns.
 const CHEAP: usize = 30_000;
 /// … and no more work than the curve either, unless that is less than so much \[ns\].
-const LITTLE: f64 = 1e9;
+pub(super) const LITTLE: f64 = 1e9;
 /// Harmonics beyond all modes that tell branches apart: what is looked for needs no more, and what is found is
 /// solved with as many as it asks for.
 const TELLING: f64 = 27.0;
