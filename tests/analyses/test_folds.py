@@ -121,7 +121,7 @@ def test_steps_that_are_too_coarse_to_be_followed_are_told():
     omega, coarse = told(4)
     (unknown,) = coarse.values()
     assert unknown.code == "branch-unknown"
-    assert unknown.severity == "caution"
+    assert unknown.severity == "note"
     assert unknown.data == {"steps": 1, "low": omega[1], "high": omega[2]}
     _, fine = told(57)
     assert list(fine) == ["jump"]

@@ -32,15 +32,15 @@ _CODES = {
         exact-orbits frequencies observed-dofs tolerances-missed static-traction start-of-march
         start time-steps kept-periods criterion modes peak-range varied-together rigid-limit
         coarse-search patterns deviations onset forces-ignored stability-undecided multipliers
-        unbounded-branch folds unstable intervals noise-estimated mode-at-rest turns
+        unbounded-branch branch-unknown folds unstable intervals noise-estimated mode-at-rest turns
         samples-drawn independent bounds wave-stability waves-unheld text
     """,
     Severity.CAUTION: """
         truncation harmonics-limit law-not-monotone undamped-motion negative-damping coarse-steps
         negative-stiffness overdamped wave-damping phase-unit mistuning-unit friction-unit
         angle-unit two-frequencies no-tolerance forces-left-out peak-at-edge optimum-at-bound
-        points-limit no-turn branch-jumps stability-unknown jump branch-unknown further-branches
-        free-flight internal-resonance not-determined tied at-bound other-minimum misfit-above-noise
+        points-limit no-turn branch-jumps stability-unknown jump further-branches free-flight
+        internal-resonance not-determined tied at-bound other-minimum misfit-above-noise
         cycles-differ values-missed rigid-contacts
     """,
     Severity.FAILURE: """
