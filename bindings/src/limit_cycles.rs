@@ -1,10 +1,10 @@
 //! Limit cycles: negative damping and settings in, cycles along a branch out.
 
-use crate::arrays::{is_half_wave, matrices, matrix, refused, series, Array2, Array3};
+use crate::arrays::{is_half_wave, matrices, matrix, series, Array2, Array3};
 use crate::columns::Columns;
 use crate::problem::Problem;
 use crate::settings::{self, get, harmonics};
-use crate::watch::computed;
+use crate::watch::{computed, whole};
 use numpy::{Complex64, PyArray1};
 use pyo3::prelude::*;
 use std::sync::Arc;
@@ -132,11 +132,10 @@ pub fn period_multipliers<'py>(
     let values: Vec<f64> = (0..points).flat_map(|n| series(&harmonics, |k| view[[n, k]])).collect();
     let motion = Unknowns::new(harmonics, values);
     let (stiffness, model) = (matrix(&circulatory), Arc::clone(&problem.model));
-    let found = py.detach(move || {
+    let found = whole(py, move |_| {
         let map = PeriodMap::new(&model)?.with_circulatory(stiffness.as_ref());
         Ok(map.multipliers(omega, &motion, Some(tolerance)).filter(|found| !found.touches))
-    });
-    let found = found.map_err(refused)?;
+    })?;
     Ok(found.map(|found| {
         let values = found.values.iter().map(|one| Complex64::new(one.re, one.im)).collect();
         (PyArray1::from_vec(py, values), found.error)
