@@ -95,6 +95,7 @@ ANALYSES = {
     ),
     "certify": ("ForcedResponse", "ss.certify(curve, 'all')"),
     "sensitivity": ("nothing", "[curve.sensitivity('x3') for _ in range(1000)]"),
+    "contact_force": ("nothing", "curve.contact_force(0, 0, 10**8)"),
     "natural_frequencies": ("nothing", "ss.natural_frequencies(chain(1500, 2))"),
 }
 

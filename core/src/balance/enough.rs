@@ -83,6 +83,7 @@ impl ForcedBalance<'_> {
                         }
                         start.clone_from(&point.unknowns);
                         climb.below = Some(point);
+                        self.begin_to_climb();
                         more
                     }
                 },

@@ -11,6 +11,7 @@ use super::solution::{Point, PointStatus};
 use super::sweep::Looks;
 use super::tangent::Tangent;
 use super::unknowns::Unknowns;
+use super::work::Account;
 use super::{ExactOrbits, Kept, Progress};
 use crate::contact::PointSummary;
 use crate::fourier::{Harmonics, SampleTable};
@@ -55,8 +56,8 @@ pub struct ForcedBalance<'a> {
     pub(super) profile: Profile,
     /// Work that every point may take, if that is said …
     pub(super) granted: f64,
-    /// … and the work of all points at which the one at hand has taken what it may.
-    pub(super) spent_at: f64,
+    /// … and the account of the one at hand.
+    pub(super) account: Account,
 }
 
 /// Sample tables by highest harmonic.
@@ -133,7 +134,7 @@ impl<'a> ForcedBalance<'a> {
             carried_away: OnceCell::new(),
             profile: Profile::default(),
             granted: f64::INFINITY,
-            spent_at: f64::INFINITY,
+            account: Account::unlimited(),
         })
     }
 

@@ -88,7 +88,9 @@ impl ForcedBalance<'_> {
         orbits.allow(self.left());
         let before = orbits.work();
         let found = search();
-        self.profile.work += orbits.work() - before;
+        let searched = orbits.work() - before;
+        self.profile.work += searched;
+        self.account.searched += searched;
         found
     }
 
