@@ -158,6 +158,8 @@ def test_one_contact_of_many_nodes_is_many_contacts_of_one():
     assert force.shape == (64, 2, 3)
     assert face.slip_fraction("face").shape == face.open_fraction("face").shape == (2, 2)
     assert face.slip_fraction("face").any(axis=0).all()
+    # Not even open for -0 of the period.
+    assert not np.signbit(face.open_fraction("face")).any()
     for node in range(2):
         alone = nodes.contact_force(node, 1, 64)
         np.testing.assert_array_equal(force[:, node], alone)

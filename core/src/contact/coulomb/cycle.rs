@@ -298,7 +298,8 @@ impl Cycle {
         let span = drive.harmonics().span();
         let share = |of: &dyn Fn(&State) -> bool| {
             let stretches = self.stretches.iter().filter(|stretch| of(&stretch.state));
-            stretches.map(|stretch| stretch.end - stretch.start).sum::<f64>() / span
+            // A sum of nothing would be -0.
+            stretches.fold(0.0, |sum, stretch| sum + (stretch.end - stretch.start)) / span
         };
         let open = share(&|state| matches!(state, State::Open));
         let stuck = share(&|state| matches!(state, State::Stuck { .. }));
