@@ -83,7 +83,7 @@ impl ForcedBalance<'_> {
                         }
                         start.clone_from(&point.unknowns);
                         climb.below = Some(point);
-                        self.begin_to_climb();
+                        self.account.begin_to_climb(&self.profile);
                         more
                     }
                 },

@@ -1,5 +1,6 @@
 //! The forced response at one frequency.
 
+use super::account::{Account, Looks};
 use super::condensed::Condensed;
 use super::evaluation::{Evaluated, Evaluations};
 use super::history::history_of;
@@ -8,10 +9,8 @@ use super::resolution_control::{Level, ResolutionControl};
 use super::scale::Scale;
 use super::settings::{Resolution, Settings};
 use super::solution::{Point, PointStatus};
-use super::sweep::Looks;
 use super::tangent::Tangent;
 use super::unknowns::Unknowns;
-use super::work::Account;
 use super::{ExactOrbits, Kept, Progress};
 use crate::contact::PointSummary;
 use crate::fourier::{Harmonics, SampleTable};
@@ -134,7 +133,7 @@ impl<'a> ForcedBalance<'a> {
             carried_away: OnceCell::new(),
             profile: Profile::default(),
             granted: f64::INFINITY,
-            account: Account::unlimited(),
+            account: Account::open(f64::INFINITY, &Profile::default()),
         })
     }
 

@@ -1,6 +1,7 @@
 //! The harmonic balance equations, condensed to the relative contact displacements:
 //! `U_k = U_k^stuck + G_k Q_k(U)` for every kept harmonic k.
 
+mod account;
 mod accuracy;
 mod at_rest;
 mod attempts;

@@ -1,20 +1,16 @@
 //! The work that the equations of a point take, as reckoned while it is done: what may be spent on a point is
 //! counted so, not by the clock, and every point ends in the same way everywhere.
 
+use super::account::Account;
 use super::condensed::Condensed;
 use super::forced::ForcedBalance;
 use super::modal_work::suits;
 use crate::contact::{ContactLaw, SlipLoad};
-use crate::timing::Profile;
 
 /// Work that a point with automatic harmonics may take beside exact orbits: some seconds, …
 const OF_POINT: f64 = 4e9;
 /// … or so many Newton steps of the lowest level, if these take more.
 const STEPS: f64 = 600.0;
-/// Before any harmonics are solved a point may take so many evaluations, up to this multiple of its work: many
-/// nodes that open and close take 1500.
-const EVALUATIONS: f64 = 2000.0;
-const UNSOLVED: f64 = 6.0;
 /// Of a march, per sample, and per sample and coefficient, of values and of every row of a tangent \[ns\].
 const PER_SAMPLE: f64 = 300.0;
 const PER_PRODUCT: f64 = 1.5;
@@ -22,27 +18,6 @@ const PER_PRODUCT: f64 = 1.5;
 const PER_PROJECTION: f64 = 0.05;
 /// Of a factorisation and what leads to it, over the third power of its size \[ns\].
 const PER_CUBE: f64 = 0.06;
-
-/// What a point may spend and has spent.
-#[derive(Default)]
-pub(super) struct Account {
-    /// Work granted, \[ns\] …
-    granted: f64,
-    /// … since all the work and evaluations before it.
-    begun: f64,
-    evaluations: usize,
-    /// Work of searches for orbits.
-    pub(super) searched: f64,
-    /// Whether some harmonics are solved.
-    pub(super) solved: bool,
-}
-
-impl Account {
-    /// One that is not opened yet.
-    pub(super) fn unlimited() -> Self {
-        Self { granted: f64::INFINITY, ..Self::default() }
-    }
-}
 
 impl Condensed<'_> {
     /// Of an evaluation of the laws, with their tangents or without \[ns\].
@@ -100,27 +75,12 @@ impl ForcedBalance<'_> {
         } else {
             f64::INFINITY
         };
-        let Profile { work: begun, evaluations, .. } = self.profile;
-        self.account = Account { granted: work, begun, evaluations, ..Account::default() };
+        self.account = Account::open(work, &self.profile);
     }
 
     /// What is left of it.
     pub(super) fn left(&self) -> f64 {
-        let Account { granted, begun, evaluations, searched, solved } = self.account;
-        let taken = self.profile.work - begun;
-        let count = (self.profile.evaluations - evaluations).max(1) as f64;
-        let dear = EVALUATIONS * (taken - searched) / count;
-        let most = if solved { granted } else { UNSOLVED * granted };
-        dear.clamp(granted, most) - taken
-    }
-
-    /// Some harmonics are solved: what is granted is for those above them.
-    pub(super) fn begin_to_climb(&mut self) {
-        let account = &mut self.account;
-        if !account.solved {
-            account.solved = true;
-            account.granted += self.profile.work - account.begun;
-        }
+        self.account.left(&self.profile)
     }
 
     /// Whether nothing is.
@@ -200,26 +160,6 @@ mod tests {
         let none = balance().granting(1.0).solve(0.7, None).unwrap();
         assert_eq!(none.status, PointStatus::WorkLimit);
         assert!(!none.is_solved());
-    }
-
-    /// Of a point that is not solved yet dear evaluations get more, searches do not; what is granted is for harmonics above.
-    #[test]
-    fn dear_evaluations_are_waited_for_until_some_harmonics_are_solved() {
-        let model = model();
-        let mut balance = ForcedBalance::new(&model, Settings::default(), &[0]).unwrap();
-        balance = balance.granting(1e9);
-        balance.grant();
-        balance.profile.evaluations += 100;
-        balance.profile.work += 1e8;
-        assert_eq!(balance.left(), EVALUATIONS * 1e6 - 1e8);
-        balance.profile.work += 3.3e9;
-        assert_eq!(balance.left(), UNSOLVED * 1e9 - 3.4e9);
-        balance.account.searched = 3.3e9;
-        assert_eq!(balance.left(), 1e9 - 3.4e9);
-        balance.begin_to_climb();
-        assert_eq!(balance.left(), 1e9);
-        balance.profile.work += 1e9;
-        assert!(balance.is_spent());
     }
 
     /// So are error estimates: those of the harmonics, and those of the samples.

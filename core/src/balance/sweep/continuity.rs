@@ -12,7 +12,6 @@
 
 use super::branch::STEPS;
 use super::forced_curve::ForcedCurve;
-use super::further::LITTLE;
 use crate::balance::condensed::Condensed;
 use crate::balance::evaluation::Evaluated;
 use crate::balance::forced::ForcedBalance;
@@ -45,26 +44,6 @@ const BETWEEN: NewtonSettings = NewtonSettings { tolerance: 1e-7, max_iterations
 const MOST: usize = 150;
 /// Distance of two solutions that are the same.
 const SAME: f64 = 1e-6;
-/// Work that looks between points may take over that of the points so far: tangents take about as much as the
-/// points, a curve that is followed some fifty times as much as one of them. Little is granted in any case.
-const SHARE: f64 = 4.0;
-
-/// The work of a sweep \[ns\].
-#[derive(Default)]
-pub(in crate::balance) struct Looks {
-    /// Of its points.
-    points: f64,
-    /// Of looks between them.
-    taken: f64,
-}
-
-impl Looks {
-    /// What is left of what looks may take.
-    fn left(&self) -> f64 {
-        (SHARE * self.points).max(LITTLE) - self.taken
-    }
-}
-
 /// Where a branch leads.
 enum Reached {
     /// To the same solution.
@@ -339,21 +318,13 @@ fn followed(curve: &mut ForcedCurve<'_>, from: &[f64], to: Option<&[f64]>, end: 
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
+    use crate::balance::account::LITTLE;
     use crate::balance::settings::{HarmonicChoice, Settings};
     use crate::balance::sweep::sweep;
     use crate::contact::Stop;
     use crate::model::{Contact, Model};
     use crate::structure::{HarmonicLoad, Structure};
     use faer::{c64, mat};
-
-    /// Looks take a multiple of what the points have taken, and little in any case.
-    #[test]
-    fn looks_are_earned_by_points() {
-        let left = |points: f64, taken: f64| Looks { points, taken }.left();
-        assert_eq!(left(0.0, 0.0), LITTLE);
-        assert_eq!(left(LITTLE, 0.0), SHARE * LITTLE);
-        assert!(left(LITTLE, SHARE * LITTLE) <= 0.0);
-    }
 
     /// Where all work is done a sweep goes on with its points alone, and tells which it has not looked at.
     #[test]

@@ -9,6 +9,7 @@
 
 use super::branch::branch_through;
 use super::load_curve::joined_by_load;
+use crate::balance::account::LITTLE;
 use crate::balance::attempts::is_bounded;
 use crate::balance::condensed::Condensed;
 use crate::balance::forced::ForcedBalance;
@@ -23,10 +24,8 @@ use std::sync::Arc;
 /// Eighths of the range at which other motions are looked for, in this order, as long as that takes no more
 /// evaluations than the curve, …
 const LOOKS: [u8; 9] = [0, 8, 4, 2, 6, 1, 3, 5, 7];
-/// … or this number over that of the unknowns.
+/// … or this number over that of the unknowns. They take no more work than the curve either, or little.
 const CHEAP: usize = 30_000;
-/// … and no more work than the curve either, unless that is less than so much \[ns\].
-pub(super) const LITTLE: f64 = 1e9;
 /// Harmonics beyond all modes that tell branches apart: what is looked for needs no more, and what is found is
 /// solved with as many as it asks for.
 const TELLING: f64 = 27.0;

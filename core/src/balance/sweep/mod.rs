@@ -20,7 +20,6 @@ mod turns;
 pub use adaptive::sweep_range;
 pub(crate) use adaptive::{check_range, seam, smooth_piece};
 pub(crate) use branch::branch_piece;
-pub(super) use continuity::Looks;
 pub(crate) use course::Course;
 pub use given::sweep;
 pub(super) use given::sweep_with;
