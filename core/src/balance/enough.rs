@@ -74,6 +74,7 @@ impl ForcedBalance<'_> {
                         return self.ended(exact.unwrap_or(point), resolution, &climb);
                     }
                     Decision::More(more) => {
+                        self.account.begin_to_climb(&self.profile);
                         if let Some(last) = self.instead_of(more, &point) {
                             return self.ended(last, resolution, &climb);
                         }
@@ -83,7 +84,6 @@ impl ForcedBalance<'_> {
                         }
                         start.clone_from(&point.unknowns);
                         climb.below = Some(point);
-                        self.account.begin_to_climb(&self.profile);
                         more
                     }
                 },
