@@ -4,11 +4,9 @@
 
 mod common;
 
-use common::curves::{amplitude_of, fixed, grid, solve};
+use common::curves::{amplitude_of, fixed, grid, peak_of, solve};
 use common::{beam_pair, runge_kutta, single_dof, snecma_beam, System};
-use stickslip_core::balance::{
-    refine_peak, sweep, sweep_range, ForcedBalance, PointStatus, Settings, Solution,
-};
+use stickslip_core::balance::{sweep, sweep_range, ForcedBalance, PointStatus, Settings, Solution};
 use stickslip_core::contact::Residual;
 use stickslip_core::fourier::Measure;
 
@@ -58,10 +56,8 @@ fn peaks_of_the_beam_by_load() {
         let model = beam.model();
         for (dof, peak, at) in [(1, tip, tip_omega), (0, damper, damper_omega)] {
             let (height, guess) = largest(&curve, dof);
-            let bracket = [guess - 1.0, guess, guess + 1.0];
-            let (omega, got) =
-                refine_peak(&model, fixed(35), dof, Measure::HalfRange, bracket, &|_| true)
-                    .unwrap();
+            let span = (guess - 1.0, guess + 1.0);
+            let (omega, got) = peak_of(&model, fixed(35), dof, Measure::HalfRange, span);
             assert!(got >= height, "{load} N: refined below the grid");
             assert!((got / peak - 1.0).abs() < 2e-3, "{load} N, DOF {dof}: {got}");
             assert!((omega - at).abs() < 0.05, "{load} N, DOF {dof}: {omega}");
@@ -85,10 +81,8 @@ fn peaks_by_damper_stiffness() {
         let curve = solve(&beam, fixed(highest), &grid(150.0, 230.0, 161));
         assert!(all_converged(&curve));
         let (height, guess) = largest(&curve, 0);
-        let bracket = [guess - 0.5, guess, guess + 0.5];
-        let (_, got) =
-            refine_peak(&beam.model(), fixed(highest), 0, Measure::HalfRange, bracket, &|_| true)
-                .unwrap();
+        let span = (guess - 0.5, guess + 0.5);
+        let (_, got) = peak_of(&beam.model(), fixed(highest), 0, Measure::HalfRange, span);
         assert!(got >= height);
         assert!((got / peak - 1.0).abs() < 2e-3, "{stiffness:e}: {got}");
     }
@@ -103,10 +97,8 @@ fn single_dof_with_its_subresonances() {
         let curve = solve(&system, fixed(35), &grid(20.0, 350.0, 400));
         assert!(all_converged(&curve));
         let (_, guess) = largest(&curve, 0);
-        let bracket = [guess - 0.8, guess, guess + 0.8];
-        let (omega, got) =
-            refine_peak(&system.model(), fixed(35), 0, Measure::HalfRange, bracket, &|_| true)
-                .unwrap();
+        let span = (guess - 0.8, guess + 0.8);
+        let (omega, got) = peak_of(&system.model(), fixed(35), 0, Measure::HalfRange, span);
         assert!((got / peak - 1.0).abs() < 2e-4, "{ratio}: {got}");
         assert!((omega - at).abs() < 0.02, "{ratio}: {omega}");
     }

@@ -5,11 +5,11 @@
 mod common;
 
 use common::coupled::Coupled;
+use common::curves::peak_of;
 use common::snecma_beam;
 use faer::{mat, Mat};
 use stickslip_core::balance::{
-    refine_peak, single_harmonic, sweep, ForcedBalance, HarmonicChoice, Method, PointStatus,
-    Settings, Solution,
+    single_harmonic, sweep, ForcedBalance, HarmonicChoice, Method, PointStatus, Settings, Solution,
 };
 use stickslip_core::contact::Jenkins;
 use stickslip_core::fourier::Measure;
@@ -66,9 +66,7 @@ fn marched_sweeps_approach_the_exact_one() {
 fn a_peak_is_refined_with_the_same_evaluation() {
     let exact = snecma_beam(20.313).model();
     let fixed = Settings { harmonics: HarmonicChoice::Fixed(9), ..Settings::default() };
-    let peak = |model: &Model| {
-        refine_peak(model, fixed, 1, Measure::HalfRange, [185.0, 190.0, 200.0], &|_| true).unwrap()
-    };
+    let peak = |model: &Model| peak_of(model, fixed, 1, Measure::HalfRange, (185.0, 200.0));
     let (coarse, fine) = (
         peak(&exact.marched(40, MarchedLaws::All).unwrap()),
         peak(&exact.marched(4096, MarchedLaws::All).unwrap()),

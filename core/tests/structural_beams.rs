@@ -4,10 +4,9 @@
 
 mod common;
 
+use common::curves::peak_of;
 use common::damper::{damped_beams, DOFS};
-use stickslip_core::balance::{
-    refine_peak, sweep, ForcedBalance, HarmonicChoice, Point, PointStatus, Settings,
-};
+use stickslip_core::balance::{sweep, ForcedBalance, HarmonicChoice, Point, PointStatus, Settings};
 use stickslip_core::contact::{Aft, ContactLaw, Motion, PointState, Residual, SlipLoad};
 use stickslip_core::fourier::{amplitude, Harmonics, Measure, SampleTable};
 use stickslip_core::model::Model;
@@ -246,10 +245,8 @@ fn peaks_of_the_frequency_responses_and_sweeps_from_either_side() {
                 .map(|n| (grid[n], up[n][i]))
                 .fold((0.0, 0.0), |best, next| if next.1 > best.1 { next } else { best });
             let (expected, omega) = expected[i];
-            let bracket = [at - 1.0, at, at + 1.0];
-            let (at, height) =
-                refine_peak(&model, settings(25), DOFS[i], Measure::HalfRange, bracket, &|_| true)
-                    .unwrap();
+            let span = (at - 1.0, at + 1.0);
+            let (at, height) = peak_of(&model, settings(25), DOFS[i], Measure::HalfRange, span);
             println!("{force} {i}: {height:e} @ {at} ({expected:e} @ {omega})");
             assert!((height / expected - 1.0).abs() < 2e-3, "{height} {expected}");
             assert!((at - omega).abs() < 1.0, "{at} {omega}");

@@ -4,12 +4,11 @@
 
 mod common;
 
+use common::curves::{fixed, peak_of};
 use common::{snecma_beam, System, SLIP_FORCE, STIFFNESS};
 use faer::{c64, Mat};
 use std::f64::consts::TAU;
-use stickslip_core::balance::{
-    refine_peak, sweep, ForcedBalance, HarmonicChoice, Point, PointStatus, Settings,
-};
+use stickslip_core::balance::{sweep, ForcedBalance, Point, PointStatus};
 use stickslip_core::contact::Jenkins;
 use stickslip_core::fourier::Measure;
 use stickslip_core::model::{Contact, Model, SectorContact};
@@ -280,10 +279,6 @@ fn other_laws_and_slopes_of_rings_are_those_of_the_whole_disk() {
     }
 }
 
-fn fixed(highest: usize) -> Settings {
-    Settings { harmonics: HarmonicChoice::Fixed(highest), ..Settings::default() }
-}
-
 #[test]
 fn a_sector_moves_as_the_whole_disk() {
     for (between, highest, engine_order) in [
@@ -335,18 +330,7 @@ fn the_tuned_ring_of_36_beams() {
     for (highest, expected) in
         [(1, 8.0014e-5), (3, 8.3035e-5), (7, 8.6130e-5), (15, 8.3912e-5), (35, 8.4116e-5)]
     {
-        let omega: Vec<f64> = (0..120).map(|i| 150.0 + f64::from(i)).collect();
-        let curve =
-            sweep(ForcedBalance::new(&ring, fixed(highest), &[0]).unwrap(), &omega).unwrap();
-        let top = (0..omega.len())
-            .max_by(|&a, &b| {
-                let size = |i: usize| curve.points[i].displacement[1].norm();
-                size(a).total_cmp(&size(b))
-            })
-            .unwrap();
-        let bracket = [omega[top] - 6.0, omega[top], omega[top] + 6.0];
-        let (_, peak) =
-            refine_peak(&ring, fixed(highest), 0, Measure::HalfRange, bracket, &|_| true).unwrap();
+        let (_, peak) = peak_of(&ring, fixed(highest), 0, Measure::HalfRange, (150.0, 269.0));
         assert!((peak / expected - 1.0).abs() < 1e-4, "{highest}: {peak} {expected}");
     }
 }

@@ -28,7 +28,6 @@ mod linearised;
 mod modal_work;
 mod neighbour;
 mod open_mean;
-mod peak;
 mod price;
 mod ring;
 mod sweep;
@@ -63,8 +62,6 @@ pub(crate) use kept::keep;
 pub use kept::{without_gap, Kept};
 pub(crate) use limit_load::{is_carried_away, is_let_go};
 pub use linearised::{Cause, FrequencyJets, Linearised};
-pub(crate) use peak::brent;
-pub use peak::refine_peak;
 pub(crate) use price::{work_of_given, MUCH};
 pub use settings::{
     Evaluation, HarmonicChoice, Method, Resolution, SampleChoice, Settings, HIGHEST_ORDER,
@@ -77,7 +74,7 @@ pub(crate) use statics::{slip_load, Level, Loading};
 pub(crate) use sweep::{
     branch_piece, check_range, join_branches, join_smooth, seam, seams, smooth_piece, Course, Piece,
 };
-pub(crate) use sweep::{check_bracket, check_frequencies, over_frequencies};
+pub(crate) use sweep::{check_frequencies, over_frequencies};
 pub use sweep::{sweep, sweep_range};
 pub use unknowns::Unknowns;
 

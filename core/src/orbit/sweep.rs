@@ -3,11 +3,11 @@
 use super::closed::Orbit;
 use super::periodic::PeriodicOrbits;
 use super::pieces::pieces;
-use crate::balance::{brent, check_bracket, check_frequencies, over_frequencies, PointStatus};
+use crate::balance::{check_frequencies, over_frequencies, PointStatus};
 use crate::fourier::Measure;
 use crate::motion::{ModalSystem, State, Transition};
 use crate::parallel::in_parts;
-use crate::solve::{extrapolated, LOOK_BACK};
+use crate::solve::{brent, extrapolated, LOOK_BACK};
 use crate::timing::Profile;
 use crate::Error;
 use std::iter;
@@ -109,7 +109,11 @@ pub fn orbit_peak(
     measure: Measure,
     [low, guess, high]: [f64; 3],
 ) -> Result<(f64, f64), Error> {
-    check_bracket([low, guess, high])?;
+    Error::check_frequency("peak: lower bound", low)?;
+    Error::check_frequency("peak: upper bound", high)?;
+    if !(low <= guess && guess <= high) {
+        return Err(Error::value("peak: guess", guess, "must lie between its bounds"));
+    }
     orbits.report_up_to(1);
     let mut start: Option<(f64, State)> = None;
     let mut height = |omega: f64| -> Result<f64, Error> {

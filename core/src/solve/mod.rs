@@ -3,6 +3,7 @@
 mod bordered;
 mod bracket;
 mod branch;
+mod brent;
 mod broyden;
 mod continuation;
 mod curve;
@@ -24,6 +25,7 @@ mod small_dense;
 pub(crate) use bracket::Bracket;
 pub(crate) use branch::{between, vertex};
 pub use branch::{Bounds, Branch, End};
+pub(crate) use brent::brent;
 pub use broyden::{broyden, BroydenEffort, FirstJacobian};
 pub use continuation::{across, at_parameter, tangent, Advance, Continuation, Steps};
 pub use curve::Curve;

@@ -2,7 +2,9 @@
 
 use super::System;
 use stickslip_core::balance::{sweep, ForcedBalance, HarmonicChoice, Point, Settings, Solution};
+use stickslip_core::design::{summits, PeakQuery};
 use stickslip_core::fourier::{amplitude, Harmonics, Measure, SampleTable};
+use stickslip_core::Model;
 
 /// Settings with so many harmonics.
 pub fn fixed(highest: usize) -> Settings {
@@ -20,6 +22,19 @@ pub fn solve(system: &System, settings: Settings, omega: &[f64]) -> Solution {
     let observe: Vec<usize> = (0..system.dofs()).collect();
     let balance = ForcedBalance::new(&model, settings, &observe).unwrap();
     sweep(balance, omega).unwrap()
+}
+
+/// Frequency and amplitude of the highest point of a range.
+pub fn peak_of(
+    model: &Model,
+    settings: Settings,
+    dof: usize,
+    measure: Measure,
+    span: (f64, f64),
+) -> (f64, f64) {
+    let quest = PeakQuery { groups: vec![vec![dof]], measure, span };
+    let found = summits(model, settings, &quest, None, &|_| true).unwrap();
+    (found.summits[0].omega, found.summits[0].amplitude)
 }
 
 /// Amplitude of the observed degree of freedom at a position.

@@ -83,16 +83,6 @@ pub(crate) fn check_frequencies(omega: &[f64]) -> Result<(), Error> {
     omega.iter().enumerate().try_for_each(check)
 }
 
-/// Refuses a bracket of a peak that is not ordered.
-pub(crate) fn check_bracket([low, guess, high]: [f64; 3]) -> Result<(), Error> {
-    Error::check_frequency("peak: lower bound", low)?;
-    Error::check_frequency("peak: upper bound", high)?;
-    if low <= guess && guess <= high {
-        return Ok(());
-    }
-    Err(Error::value("peak: guess", guess, "must lie between its bounds"))
-}
-
 pub(super) fn finish(
     balance: ForcedBalance<'_>,
     points: Vec<Arc<Point>>,

@@ -23,6 +23,6 @@ pub(crate) use branch::branch_piece;
 pub(crate) use course::Course;
 pub use given::sweep;
 pub(super) use given::sweep_with;
-pub(crate) use given::{check_bracket, check_frequencies, over_frequencies};
+pub(crate) use given::{check_frequencies, over_frequencies};
 pub(crate) use join::{join_branches, join_smooth, Piece};
 pub(crate) use seams::seams;

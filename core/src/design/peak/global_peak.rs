@@ -11,10 +11,8 @@ use crate::balance::{
 };
 use crate::fourier::Measure;
 use crate::model::Model;
-use crate::timing::Profile;
 use crate::Error;
 use std::sync::Arc;
-use std::time::Instant;
 
 /// How many times the error that an interpolant should have is allowed for.
 const CAUTION: f64 = 4.0;
@@ -95,8 +93,6 @@ pub struct Summits {
     pub summits: Vec<GlobalPeak>,
     /// Responses solved for.
     pub points: usize,
-    /// Where the time went.
-    pub profile: Profile,
 }
 
 impl Summits {
@@ -104,12 +100,6 @@ impl Summits {
     #[must_use]
     pub fn interrupted(&self) -> bool {
         self.summits.iter().any(|summit| summit.status == PointStatus::NotComputed)
-    }
-
-    /// Highest harmonic kept at any summit.
-    #[must_use]
-    pub fn harmonics(&self) -> usize {
-        self.summits.iter().map(|summit| summit.harmonics).max().unwrap_or(0)
     }
 }
 
@@ -137,12 +127,10 @@ pub(crate) fn climbed(
     order: Option<usize>,
     progress: &Progress<'_>,
 ) -> Result<Summits, Error> {
-    let start = Instant::now();
     let mut climb = PeakSearch::new(model, settings, quest, precision, progress)?;
     let reached = climb.run(model, order, None)?;
-    let profile = Profile { total: start.elapsed(), ..climb.memory.profile };
     let summits = reached.summits.into_iter().map(|(summit, _)| summit).collect();
-    Ok(Summits { summits, points: climb.points, profile })
+    Ok(Summits { summits, points: climb.points })
 }
 
 /// Searches for highest points, each from the samples of the last.

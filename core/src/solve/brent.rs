@@ -1,13 +1,6 @@
-//! The true maximum of a curve between its grid points.
+//! The maximum of a curve of which nothing but values is known.
 
-use super::forced::ForcedBalance;
-use super::settings::{Resolution, Settings};
-use super::sweep::check_bracket;
-use super::unknowns::Unknowns;
-use super::Progress;
-use crate::fourier::{amplitude, Measure};
-use crate::model::Model;
-use crate::solve::vertex;
+use super::vertex;
 use crate::Error;
 
 /// Width of the final bracket relative to the frequency; the amplitude is stationary there, so
@@ -15,62 +8,7 @@ use crate::Error;
 const TOLERANCE: f64 = 1e-8;
 const GOLDEN: f64 = 0.381_966_011_250_105_1;
 
-/// Maximises the amplitude of one DOF over `[low, high]` [rad/s] from `guess` by Brent's method
-/// (golden section and parabolas), every value a solution of its own. Returns the frequency and
-/// the amplitude, minus infinity if no point in the bracket converges. When `progress` ends the
-/// search, the points after it count as not converged.
-///
-/// # Errors
-/// As for a sweep; a bracket that is not ordered.
-pub fn refine_peak(
-    model: &Model,
-    settings: Settings,
-    dof: usize,
-    measure: Measure,
-    [low, guess, high]: [f64; 3],
-    progress: &Progress<'_>,
-) -> Result<(f64, f64), Error> {
-    check_bracket([low, guess, high])?;
-    let observe = [dof];
-    let (settings, mut start) = with_one_resolution(model, settings, &observe, [low, high, guess])?;
-    let mut balance = ForcedBalance::new(model, settings, &observe)?.watched(progress);
-    let mut height = |omega: f64| -> Result<f64, Error> {
-        let point = balance.solve(omega, start.as_ref())?;
-        if !point.is_solved() {
-            return Ok(f64::NEG_INFINITY);
-        }
-        let table = balance.table(point.harmonics);
-        let mut series = vec![0.0; table.harmonics().slots()];
-        table.harmonics().write_series(&point.displacement, &mut series);
-        start = point.unknowns;
-        Ok(amplitude(&table, &series, measure))
-    };
-    brent(low, guess, high, &mut height)
-}
-
-/// Replaces automatic harmonics and samples by the most that are chosen at three frequencies: an
-/// amplitude whose order changes from point to point is too rough to maximise. Returns the solution
-/// at the last of them too.
-fn with_one_resolution(
-    model: &Model,
-    settings: Settings,
-    observe: &[usize],
-    omega: [f64; 3],
-) -> Result<(Settings, Option<Unknowns>), Error> {
-    if !settings.is_automatic() {
-        return Ok((settings, None));
-    }
-    let mut balance = ForcedBalance::new(model, settings, observe)?;
-    let (mut finest, mut start) = (Resolution { harmonics: 1, samples: None }, None);
-    for frequency in omega {
-        let point = balance.solve(frequency, start.as_ref())?;
-        finest = finest.or_finer(point.resolution());
-        start = point.unknowns;
-    }
-    Ok((settings.at(finest), start))
-}
-
-/// Brent's maximiser without derivatives.
+/// The maximum of a height over a frequency between two others, by Brent's method: golden section and parabolas.
 pub(crate) fn brent(
     mut low: f64,
     guess: f64,
