@@ -1,9 +1,9 @@
 //! Continuation of curves with smooth folds, corners, near misses and closed loops.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-use faer::Mat;
+use faer::mat;
 use stickslip_core::solve::{
-    at_parameter, Advance, Bounds, Branch, Continuation, Curve, End, Steps,
+    at_parameter, factorised_with, Advance, Bounds, Branch, Continuation, Curve, End, Steps,
 };
 
 /// `p = 1 − |x| − x²/4`: a fold at a corner; with `smooth`, `p = 1 − x²`.
@@ -22,10 +22,16 @@ impl Curve for Fold {
         out[0] = z[1] - 1.0 + height;
     }
 
-    fn jacobian(&mut self, z: &[f64], out: &mut Mat<f64>) {
+    fn solve_bordered(
+        &mut self,
+        z: &[f64],
+        border: &[f64],
+        right: &[f64],
+        weights: &[f64],
+    ) -> Option<(Vec<f64>, f64)> {
         let x = z[0];
-        out[(0, 0)] = if self.smooth { 2.0 * x } else { x.signum() + 0.5 * x };
-        out[(0, 1)] = 1.0;
+        let slope = if self.smooth { 2.0 * x } else { x.signum() + 0.5 * x };
+        factorised_with(mat![[slope, 1.0], [0.0, 0.0]], border, right, weights)
     }
 
     fn weights(&self, _: &[f64]) -> Vec<f64> {
@@ -79,9 +85,15 @@ impl<F: Fn(f64, f64) -> [f64; 3]> Curve for Plane<F> {
         out[0] = self.0(z[0], z[1])[0];
     }
 
-    fn jacobian(&mut self, z: &[f64], out: &mut Mat<f64>) {
+    fn solve_bordered(
+        &mut self,
+        z: &[f64],
+        border: &[f64],
+        right: &[f64],
+        weights: &[f64],
+    ) -> Option<(Vec<f64>, f64)> {
         let [_, by_x, by_p] = self.0(z[0], z[1]);
-        (out[(0, 0)], out[(0, 1)]) = (by_x, by_p);
+        factorised_with(mat![[by_x, by_p], [0.0, 0.0]], border, right, weights)
     }
 
     fn weights(&self, _: &[f64]) -> Vec<f64> {
@@ -143,11 +155,16 @@ impl Curve for Loop {
         out[1] = (z[1] - 2.0).powi(2) + (z[2] - 2.0).powi(2) - 1.0;
     }
 
-    fn jacobian(&mut self, z: &[f64], out: &mut Mat<f64>) {
-        out.fill(0.0);
-        out[(0, 0)] = 1.0;
-        out[(1, 1)] = 2.0 * (z[1] - 2.0);
-        out[(1, 2)] = 2.0 * (z[2] - 2.0);
+    fn solve_bordered(
+        &mut self,
+        z: &[f64],
+        border: &[f64],
+        right: &[f64],
+        weights: &[f64],
+    ) -> Option<(Vec<f64>, f64)> {
+        let [y, p] = [1, 2].map(|i| 2.0 * (z[i] - 2.0));
+        let matrix = mat![[1.0, 0.0, 0.0], [0.0, y, p], [0.0, 0.0, 0.0]];
+        factorised_with(matrix, border, right, weights)
     }
 
     fn weights(&self, _: &[f64]) -> Vec<f64> {

@@ -81,7 +81,7 @@ impl Branch {
                 Advance::Interrupted => break End::Interrupted,
                 Advance::Point => {}
             }
-            let value = parameter(curve, &walk.point);
+            let value = parameter(&walk.point);
             let (low, high) = bounds.range;
             if value < low || value > high {
                 let edge = if value < low { low } else { high };
@@ -122,7 +122,7 @@ impl Branch {
     /// Adds a point, and the fold before it if the parameter has turned.
     fn push(&mut self, curve: &mut dyn Curve, point: Vec<f64>) {
         if let [.., before, last] = &self.points[..] {
-            let [a, b, c] = [before, last, &point].map(|z| parameter(curve, z));
+            let [a, b, c] = [before, last, &point].map(|z| parameter(z));
             if (b - a) * (c - b) < 0.0 && self.folds.last() != Some(&(self.points.len() - 1)) {
                 if let Some(fold) = Self::turn(curve, before, last, &point) {
                     let nearer = distance(curve, &fold, before) < distance(curve, last, before);
@@ -174,8 +174,8 @@ impl Branch {
     ) -> Option<Vec<f64>> {
         curve.accept(middle);
         let weights = curve.weights(middle);
-        let sign = (parameter(curve, middle) - parameter(curve, before)).signum();
-        let height = |curve: &dyn Curve, z: &[f64]| sign * parameter(curve, z);
+        let sign = (parameter(middle) - parameter(before)).signum();
+        let height = |z: &[f64]| sign * parameter(z);
         let chord: Vec<f64> = after.iter().zip(before).map(|(a, b)| a - b).collect();
         let squared = |a: &[f64], b: &[f64]| -> f64 {
             (0..a.len()).map(|i| weights[i].powi(2) * a[i] * b[i]).sum()
@@ -195,15 +195,14 @@ impl Branch {
             if curve.interrupted() {
                 break;
             }
-            let best = (1..known.len() - 1).max_by(|&i, &j| {
-                height(curve, &known[i].1).total_cmp(&height(curve, &known[j].1))
-            })?;
+            let best = (1..known.len() - 1)
+                .max_by(|&i, &j| height(&known[i].1).total_cmp(&height(&known[j].1)))?;
             let [left, here, right] = [&known[best - 1], &known[best], &known[best + 1]];
             let (low, high) = (left.0, right.0);
             if high - low <= AT_FOLD * length {
                 break;
             }
-            let vertex = vertex([left, here, right].map(|(s, z)| (*s, parameter(curve, z))));
+            let vertex = vertex([left, here, right].map(|(s, z)| (*s, parameter(z))));
             let gap = 0.01 * (high - low);
             let golden = if high - here.0 > here.0 - low {
                 here.0 + GOLDEN * (high - here.0)
@@ -230,15 +229,14 @@ impl Branch {
             let position = known.partition_point(|(s, _)| *s < at);
             known.insert(position, (at, z));
         }
-        let (_, fold) =
-            known.into_iter().max_by(|a, b| height(curve, &a.1).total_cmp(&height(curve, &b.1)))?;
+        let (_, fold) = known.into_iter().max_by(|a, b| height(&a.1).total_cmp(&height(&b.1)))?;
         Some(fold)
     }
 
     /// Ends the branch exactly at the edge of the range, before a point beyond it.
     fn end_at(&mut self, curve: &mut dyn Curve, beyond: &[f64], edge: f64) {
         let Some(last) = self.points.last() else { return };
-        if parameter(curve, last) == edge {
+        if parameter(last) == edge {
             return;
         }
         if let Some((point, iterations)) = between(curve, last, beyond, edge) {
@@ -251,7 +249,7 @@ impl Branch {
     pub fn at(&self, curve: &mut dyn Curve, value: f64) -> Vec<(usize, Vec<f64>)> {
         let mut found = Vec::new();
         for (position, pair) in self.points.windows(2).enumerate() {
-            let [a, b] = [0, 1].map(|i| parameter(curve, &pair[i]) - value);
+            let [a, b] = [0, 1].map(|i| parameter(&pair[i]) - value);
             if a == 0.0 {
                 found.push((position, pair[0].clone()));
             } else if a * b < 0.0 {
@@ -262,7 +260,7 @@ impl Branch {
             }
         }
         if let Some(last) = self.points.last() {
-            if parameter(curve, last) == value {
+            if parameter(last) == value {
                 found.push((self.points.len() - 1, last.clone()));
             }
         }
@@ -299,7 +297,7 @@ pub(crate) fn between(
     b: &[f64],
     value: f64,
 ) -> Option<(Vec<f64>, usize)> {
-    let [from, to] = [a, b].map(|z| parameter(curve, z));
+    let [from, to] = [a, b].map(parameter);
     let share = (value - from) / (to - from);
     let mixed =
         |share: f64| -> Vec<f64> { a.iter().zip(b).map(|(a, b)| a + share * (b - a)).collect() };
@@ -317,8 +315,8 @@ pub(crate) fn between(
     None
 }
 
-fn parameter(curve: &dyn Curve, z: &[f64]) -> f64 {
-    z[curve.parameter(z)]
+fn parameter(z: &[f64]) -> f64 {
+    z[z.len() - 1]
 }
 
 /// Distance of two points, each scalar by itself and the motion against the whole of it.

@@ -83,7 +83,7 @@ impl Continuation {
         curve.accept(&start);
         let weights = curve.weights(&start);
         let mut ahead = vec![0.0; start.len()];
-        ahead[curve.parameter(&start)] = sign;
+        ahead[start.len() - 1] = sign;
         let (direction, orientation) =
             oriented(curve, &start, &weights, &ahead).unwrap_or((ahead, 1.0));
         Self {
@@ -315,7 +315,7 @@ pub fn at_parameter(
 ) -> Option<(Vec<f64>, usize)> {
     let weights = curve.weights(start);
     let mut z = start.to_vec();
-    let at = curve.parameter(start);
+    let at = start.len() - 1;
     z[at] = value;
     let mut normal = vec![0.0; z.len()];
     normal[at] = weights[at].recip();
@@ -339,7 +339,7 @@ pub fn across(curve: &mut dyn Curve, a: &[f64], b: &[f64], share: f64) -> Option
 #[cfg(test)]
 mod tests {
     use super::*;
-    use faer::Mat;
+    use crate::solve::factorised_with;
 
     /// `x = 0`, where equations are defined up to this distance from the last point.
     struct Near {
@@ -356,8 +356,14 @@ mod tests {
             out[0] = if (z[1] - self.last).abs() > self.reach { f64::NAN } else { z[0] };
         }
 
-        fn jacobian(&mut self, _: &[f64], out: &mut Mat<f64>) {
-            (out[(0, 0)], out[(0, 1)]) = (1.0, 0.0);
+        fn solve_bordered(
+            &mut self,
+            _: &[f64],
+            border: &[f64],
+            right: &[f64],
+            weights: &[f64],
+        ) -> Option<(Vec<f64>, f64)> {
+            factorised_with(faer::mat![[1.0, 0.0], [0.0, 0.0]], border, right, weights)
         }
 
         fn weights(&self, _: &[f64]) -> Vec<f64> {

@@ -1,35 +1,19 @@
 //! A curve of solutions as equations: what a continuation asks of them.
 
-use super::scaled_lu::solve;
-use faer::Mat;
-
-/// Equations that leave one degree of freedom.
+/// Equations that leave one degree of freedom. The last of the unknowns is the parameter.
 pub trait Curve {
     /// Number of unknowns, one more than equations.
     fn unknowns(&self) -> usize;
 
-    /// Position of the parameter among the unknowns of `z`: the last one, if nothing else is said.
-    fn parameter(&self, z: &[f64]) -> usize {
-        z.len() - 1
-    }
-
     /// Position from which on the unknowns of `z` are compared one by one, the parameter among them;
     /// those before are one motion, compared as a whole and wherever it begins in time.
     fn scalars(&self, z: &[f64]) -> usize {
-        self.parameter(z)
+        z.len() - 1
     }
 
     /// Residual at `z`, of the order of the relative error of the unknowns; not a number where it
     /// is not defined.
     fn residual(&mut self, z: &[f64], out: &mut [f64]);
-
-    /// Jacobian at `z` into the first rows of `out`, unknowns × unknowns.
-    fn jacobian(&mut self, z: &[f64], out: &mut Mat<f64>);
-
-    /// The same where the parameter stays as it is: its column does not matter.
-    fn jacobian_at_parameter(&mut self, z: &[f64], out: &mut Mat<f64>) {
-        self.jacobian(z, out);
-    }
 
     /// Solves the equations linearised at `z` with one more row, `border x = last of right`; tells the
     /// sign of their determinant, too, or 0 where it is not known. Nothing where they are singular.
@@ -39,19 +23,7 @@ pub trait Curve {
         border: &[f64],
         right: &[f64],
         weights: &[f64],
-    ) -> Option<(Vec<f64>, f64)> {
-        let size = z.len();
-        let mut matrix = Mat::<f64>::zeros(size, size);
-        let at = self.parameter(z);
-        let held = border.iter().enumerate().all(|(j, entry)| j == at || *entry == 0.0);
-        if held && right[size - 1] == 0.0 {
-            self.jacobian_at_parameter(z, &mut matrix);
-        } else {
-            self.jacobian(z, &mut matrix);
-        }
-        border.iter().enumerate().for_each(|(j, entry)| matrix[(size - 1, j)] = *entry);
-        solve(&mut matrix, right, weights)
-    }
+    ) -> Option<(Vec<f64>, f64)>;
 
     /// What the unknowns are multiplied by to be compared with each other, about `z`.
     fn weights(&self, z: &[f64]) -> Vec<f64>;

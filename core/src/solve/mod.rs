@@ -38,6 +38,7 @@ pub use homotopy::{homotopy, Parametrised};
 pub use krylov::{gmres, KrylovReport, KrylovSettings};
 pub use newton::{newton, NewtonSettings, Outcome, Report};
 pub use qr::Qr;
+pub use scaled_lu::solve_with as factorised_with;
 pub(crate) use scaled_lu::{parity, solve as factorised};
 pub use small_dense::{Block, BlockFactors};
 

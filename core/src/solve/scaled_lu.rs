@@ -25,6 +25,17 @@ pub(crate) fn solve(
     step.iter().all(|s| s.is_finite()).then_some((step, sign))
 }
 
+/// Solves equations in all rows of a matrix but the last, which a border fills, as [`super::Curve`] asks for it.
+pub fn solve_with(
+    mut matrix: Mat<f64>,
+    border: &[f64],
+    right: &[f64],
+    weights: &[f64],
+) -> Option<(Vec<f64>, f64)> {
+    border.iter().enumerate().for_each(|(j, entry)| matrix[(border.len() - 1, j)] = *entry);
+    solve(&mut matrix, right, weights)
+}
+
 /// Sign of a permutation.
 pub(crate) fn parity(order: &[usize]) -> f64 {
     let mut seen = vec![false; order.len()];

@@ -9,7 +9,7 @@ use crate::balance::evaluation::Evaluated;
 use crate::balance::unknowns::Unknowns;
 use crate::fourier::{Harmonics, SampleTable};
 use crate::model::FlutterModel;
-use crate::solve::{norm, Curve, System as _};
+use crate::solve::{factorised_with, norm, Curve, System as _};
 use faer::Mat;
 use std::sync::Arc;
 
@@ -85,6 +85,27 @@ impl<'a> CycleBalance<'a> {
         let mut residual = vec![0.0; u.len()];
         equations.residual(u, &mut residual);
         Some(Evaluation { z: z.to_vec(), equations, residual })
+    }
+
+    /// The Jacobian at a point, with nothing in its last row.
+    pub fn jacobian(&mut self, z: &[f64]) -> Option<Mat<f64>> {
+        self.evaluate(z)?;
+        let Evaluation { equations, .. } = self.at.as_ref()?;
+        let (matrix, (u, ..)) = (equations.assemble_all(), self.parts(z));
+        let (by_omega, by_value) = (equations.frequency_rate(), self.value_rate(equations, u));
+        let size = u.len();
+        let mut out = Mat::zeros(z.len(), z.len());
+        for i in 0..size {
+            for j in 0..size {
+                out[(i, j)] = matrix[(i, j)] / self.size;
+            }
+            out[(i, size)] = -by_omega[i] / self.size;
+            out[(i, size + 1)] = -by_value[i] / self.size;
+        }
+        for (j, d) in self.drift().iter().enumerate() {
+            out[(size, j)] = d / self.size;
+        }
+        Some(out)
     }
 
     /// Rate of change of the equations with the scalar, sign reversed.
@@ -165,27 +186,14 @@ impl Curve for CycleBalance<'_> {
         out[u.len()] = across.sum::<f64>() / size;
     }
 
-    fn jacobian(&mut self, z: &[f64], out: &mut Mat<f64>) {
-        if self.evaluate(z).is_none() {
-            return out.fill(f64::NAN);
-        }
-        let Some(Evaluation { equations, .. }) = &mut self.at else { return };
-        let matrix = equations.assemble_all();
-        let Some(Evaluation { equations, .. }) = &self.at else { return };
-        let (u, ..) = self.parts(z);
-        let (by_omega, by_value) = (equations.frequency_rate(), self.value_rate(equations, u));
-        let size = u.len();
-        out.fill(0.0);
-        for i in 0..size {
-            for j in 0..size {
-                out[(i, j)] = matrix[(i, j)] / self.size;
-            }
-            out[(i, size)] = -by_omega[i] / self.size;
-            out[(i, size + 1)] = -by_value[i] / self.size;
-        }
-        for (j, d) in self.drift().iter().enumerate() {
-            out[(size, j)] = d / self.size;
-        }
+    fn solve_bordered(
+        &mut self,
+        z: &[f64],
+        border: &[f64],
+        right: &[f64],
+        weights: &[f64],
+    ) -> Option<(Vec<f64>, f64)> {
+        factorised_with(self.jacobian(z)?, border, right, weights)
     }
 
     fn weights(&self, z: &[f64]) -> Vec<f64> {

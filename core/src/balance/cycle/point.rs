@@ -6,8 +6,7 @@ use crate::balance::solution::{Point, PointStatus};
 use crate::fourier::{Harmonics, SampleTable};
 use crate::solve::{norm, Curve as _, NewtonSettings};
 use crate::structure::Quantity;
-use faer::linalg::solvers::Solve as _;
-use faer::{c64, Mat};
+use faer::c64;
 
 impl CycleBalance<'_> {
     /// Motion, forces and friction work at a point of the curve, with t = 0 at the maximum of the
@@ -49,21 +48,12 @@ impl CycleBalance<'_> {
         let size = curve.unknowns();
         let mut right = vec![0.0; size];
         curve.residual(&start, &mut right[..size - 1]);
-        let mut matrix = Mat::<f64>::zeros(size, size);
-        curve.jacobian(&start, &mut matrix);
+        right.iter_mut().for_each(|r| *r = -*r);
         let weights = curve.weights(&start);
-        for j in 0..size {
-            matrix[(size - 1, j)] = weights[j].powi(2) * direction[j];
-            for i in 0..size {
-                matrix[(i, j)] /= weights[j];
-            }
-        }
-        let mut step = Mat::from_fn(size, 1, |i, _| -right[i]);
-        matrix.partial_piv_lu().solve_in_place(&mut step);
-        let step: Vec<f64> = (0..size).map(|i| step[(i, 0)] / weights[i]).collect();
-        if !step.iter().all(|s| s.is_finite()) {
+        let border: Vec<f64> = weights.iter().zip(&direction).map(|(w, d)| w.powi(2) * d).collect();
+        let Some((step, _)) = curve.solve_bordered(&start, &border, &right, &weights) else {
             return infinite;
-        }
+        };
         let before = curve.displacements(&start);
         let moved: Vec<f64> = start.iter().zip(&step).map(|(z, s)| z + s).collect();
         let after = curve.displacements(&moved);

@@ -8,7 +8,6 @@ use crate::contact::Residual;
 use crate::fourier::SampleTable;
 use crate::solve::{norm, Curve, System as _};
 use crate::timing::Profile;
-use faer::Mat;
 
 /// The equations in the unknowns `(U, ω)` at one resolution.
 pub(super) struct ForcedCurve<'a> {
@@ -129,22 +128,6 @@ impl Curve for ForcedCurve<'_> {
         out.iter_mut().zip(&at.residual).for_each(|(out, r)| *out = r / size);
     }
 
-    fn jacobian(&mut self, z: &[f64], out: &mut Mat<f64>) {
-        if self.evaluate(z).is_none() {
-            return out.fill(f64::NAN);
-        }
-        let Some(Evaluation { equations, .. }) = &mut self.at else { return };
-        let matrix = equations.assemble_all();
-        let by_omega = equations.frequency_rate();
-        out.fill(0.0);
-        for i in 0..by_omega.len() {
-            for j in 0..by_omega.len() {
-                out[(i, j)] = matrix[(i, j)] / self.size;
-            }
-            out[(i, by_omega.len())] = -by_omega[i] / self.size;
-        }
-    }
-
     fn solve_bordered(
         &mut self,
         z: &[f64],
@@ -186,7 +169,7 @@ mod tests {
     use crate::fourier::Harmonics;
     use crate::model::{Contact, Model};
     use crate::structure::{HarmonicLoad, Structure};
-    use faer::{c64, mat};
+    use faer::{c64, mat, Mat};
 
     /// Two masses on a planar contact each, one of which may open, and one that is stuck for good.
     fn model() -> Model {
@@ -252,9 +235,14 @@ mod tests {
             let border: Vec<f64> = (0..size).map(|i| weights[i] * (0.3 * i as f64).cos()).collect();
             let right: Vec<f64> = (0..size).map(|i| (0.7 * i as f64).sin()).collect();
             let (step, sign) = curve.solve_bordered(&z, &border, &right, &weights).unwrap();
-            let mut matrix = Mat::<f64>::zeros(size, size);
-            curve.jacobian(&z, &mut matrix);
-            border.iter().enumerate().for_each(|(j, b)| matrix[(size - 1, j)] = *b);
+            let motion = curve.size;
+            let (equations, _) = curve.equations(&z).unwrap();
+            let (by_motion, by_omega) = (equations.assemble_all(), equations.frequency_rate());
+            let matrix = Mat::from_fn(size, size, |i, j| match (size - 1 - i, size - 1 - j) {
+                (0, _) => border[j],
+                (_, 0) => -by_omega[i] / motion,
+                _ => by_motion[(i, j)] / motion,
+            });
             for i in 0..size {
                 let row: f64 = (0..size).map(|j| matrix[(i, j)] * step[j]).sum();
                 let scale: f64 = (0..size).map(|j| (matrix[(i, j)] * step[j]).abs()).sum();

@@ -3,7 +3,6 @@
 
 use crate::balance::condensed::Condensed;
 use crate::solve::{between, norm, Advance, Continuation, Curve, Steps, System as _};
-use faer::Mat;
 
 /// Steps relative to the motion and to the load.
 const STEPS: Steps = Steps { first: 0.03, shortest: 1e-6, longest: 0.3, max_iterations: 10 };
@@ -78,16 +77,6 @@ impl Curve for LoadCurve<'_, '_> {
     fn residual(&mut self, z: &[f64], out: &mut [f64]) {
         self.evaluate(z);
         out.iter_mut().zip(&self.at[1]).for_each(|(out, r)| *out = r / self.size);
-    }
-
-    fn jacobian(&mut self, z: &[f64], out: &mut Mat<f64>) {
-        self.evaluate(z);
-        let matrix = self.equations.assemble_all();
-        out.fill(0.0);
-        for (i, stuck) in self.equations.stuck_response().iter().enumerate() {
-            (0..matrix.ncols()).for_each(|j| out[(i, j)] = matrix[(i, j)] / self.size);
-            out[(i, matrix.ncols())] = -stuck / self.size;
-        }
     }
 
     fn solve_bordered(

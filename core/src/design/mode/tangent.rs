@@ -4,7 +4,6 @@ use super::condensed::Condensed;
 use super::equations::{dynamic, ModeEquations};
 use super::feed::Feed;
 use crate::solve::{norm, Curve};
-use faer::Mat;
 use std::time::Instant;
 
 impl ModeEquations<'_> {
@@ -80,26 +79,6 @@ impl Curve for ModeEquations<'_> {
         out.copy_from_slice(&self.evaluate(z));
     }
 
-    fn jacobian(&mut self, z: &[f64], out: &mut Mat<f64>) {
-        self.evaluate(z);
-        let size = z.len() - 3;
-        let rates = self.scalar_rates(z);
-        let mut unit = vec![0.0; size];
-        for j in 0..size {
-            let mut column = vec![0.0; size];
-            unit[j] = 1.0;
-            self.add_modal_product(z, &unit, &mut column);
-            unit[j] = 0.0;
-            (0..size).for_each(|i| out[(i, j)] = self.scales[i] * column[i]);
-        }
-        for (j, rate) in rates.iter().enumerate() {
-            (0..size).for_each(|i| out[(i, size + j)] = self.scales[i] * rate[i]);
-        }
-        for (j, row) in self.range(1).zip(&self.phase) {
-            (out[(size, j)], out[(size + 1, j)]) = (z[j], *row);
-        }
-    }
-
     fn solve_bordered(
         &mut self,
         z: &[f64],
@@ -153,7 +132,7 @@ mod tests {
     use crate::model::Model;
     use crate::solve::factorised;
     use crate::structure::{HarmonicLoad, Structure};
-    use faer::{c64, mat};
+    use faer::{c64, mat, Mat};
     use std::sync::Arc;
 
     #[test]
@@ -187,6 +166,25 @@ mod tests {
         }
     }
 
+    fn jacobian(equations: &mut ModeEquations<'_>, z: &[f64]) -> Mat<f64> {
+        let size = z.len() - 3;
+        equations.evaluate(z);
+        let mut out = Mat::zeros(z.len(), z.len());
+        for j in 0..size {
+            let (mut unit, mut column) = (vec![0.0; size], vec![0.0; size]);
+            unit[j] = 1.0;
+            equations.add_modal_product(z, &unit, &mut column);
+            (0..size).for_each(|i| out[(i, j)] = equations.scales[i] * column[i]);
+        }
+        for (j, rate) in equations.scalar_rates(z).iter().enumerate() {
+            (0..size).for_each(|i| out[(i, size + j)] = equations.scales[i] * rate[i]);
+        }
+        for (j, row) in equations.range(1).zip(&equations.phase) {
+            (out[(size, j)], out[(size + 1, j)]) = (z[j], *row);
+        }
+        out
+    }
+
     fn check(mut equations: ModeEquations<'_>) {
         let size = equations.size();
         let mut z: Vec<f64> = (0..size).map(|i| 0.3 * (1.0 + 1.7 * i as f64).sin()).collect();
@@ -196,8 +194,7 @@ mod tests {
         equations.hold(&other);
         let residual = equations.evaluate(&z);
         assert!(equations.loads.iter().all(|load| load.active));
-        let mut matrix = Mat::zeros(size, size);
-        equations.jacobian(&z, &mut matrix);
+        let mut matrix = jacobian(&mut equations, &z);
         for j in 0..size {
             let h = 1e-6;
             let mut at = |by: f64| {

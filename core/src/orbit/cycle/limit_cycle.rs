@@ -15,7 +15,7 @@ use crate::orbit::segments::{
     follow, halved, product_eigenvalues, segmentation, Member, Segment, Segmentation,
 };
 use crate::orbit::shooting::Shooting;
-use crate::solve::{norm, Curve};
+use crate::solve::{factorised_with, norm, Curve};
 use faer::{c64, Mat};
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -224,6 +224,61 @@ impl<'a> OrbitCurve<'a> {
             Some(states.collect())
         })
     }
+
+    /// The Jacobian at a point, with nothing in its last row and in the column of the parameter.
+    fn jacobian_at_parameter(&mut self, z: &[f64]) -> Option<Mat<f64>> {
+        if !self.evaluate(z, true) {
+            return None;
+        }
+        let mut out = Mat::zeros(z.len(), z.len());
+        let (all, size) = (z.len() - 2, self.orbits.size());
+        let at = self.at.as_ref()?;
+        let count = at.segments.len();
+        for (number, one) in at.segments.iter().enumerate() {
+            let (first, next) = (number * size, (number + 1) % count * size);
+            // A segment lasts π/(m ω), or 2π/(m ω); the end of the last one of half a period is mirrored.
+            let mirrored = if self.is_symmetric() && number + 1 == count { 1.0 } else { -1.0 };
+            let span = self.orbits.span();
+            let shorter = mirrored * span / (count as f64 * z[all] * z[all]) / self.size;
+            for i in 0..size {
+                for j in 0..size {
+                    out[(first + i, first + j)] = one.derivative[(i, j)] / self.size;
+                }
+                out[(first + i, all)] = one.rate[i] * shorter;
+                out[(first + i, next + i)] -= self.size.recip();
+            }
+        }
+        for (j, d) in self.drift.iter().enumerate() {
+            out[(all, j)] = d / self.size;
+        }
+        for (target, form) in &at.kept {
+            let row = all - size + target;
+            (0..z.len()).for_each(|j| out[(row, j)] = 0.0);
+            form.iter().enumerate().for_each(|(j, f)| out[(row, j)] = f / self.size);
+        }
+        Some(out)
+    }
+
+    /// Gives the Jacobian at a point the column of the parameter, by differences.
+    fn add_rate(&mut self, z: &[f64], out: &mut Mat<f64>) -> Option<()> {
+        let at = z.len() - 1;
+        let step = DIFFERENCE * z[at].abs().max(f64::MIN_POSITIVE);
+        let images = [step, -step].map(|step| {
+            let mut shifted = z.to_vec();
+            shifted[at] += step;
+            let segments = self.with_shooting(&shifted, follow)?;
+            Some(segments.into_iter().flat_map(|one| one.image).collect::<Vec<f64>>())
+        });
+        self.flows += 2;
+        let [Some(ahead), Some(behind)] = images else { return None };
+        for (row, (ahead, behind)) in ahead.iter().zip(behind).enumerate() {
+            out[(row, at)] = (ahead - behind) / (2.0 * step) / self.size;
+        }
+        for (target, _) in self.at.iter().flat_map(|at| &at.kept) {
+            out[(at - 1 - self.orbits.size() + target, at)] = 0.0;
+        }
+        Some(())
+    }
 }
 
 impl Curve for OrbitCurve<'_> {
@@ -257,60 +312,20 @@ impl Curve for OrbitCurve<'_> {
         out[all] = way.map(|((z, known), d)| d * (z - known)).sum::<f64>() / self.size;
     }
 
-    fn jacobian(&mut self, z: &[f64], out: &mut Mat<f64>) {
-        self.jacobian_at_parameter(z, out);
+    fn solve_bordered(
+        &mut self,
+        z: &[f64],
+        border: &[f64],
+        right: &[f64],
+        weights: &[f64],
+    ) -> Option<(Vec<f64>, f64)> {
         let at = z.len() - 1;
-        let step = DIFFERENCE * z[at].abs().max(f64::MIN_POSITIVE);
-        let images = [step, -step].map(|step| {
-            let mut shifted = z.to_vec();
-            shifted[at] += step;
-            let segments = self.with_shooting(&shifted, follow)?;
-            Some(segments.into_iter().flat_map(|one| one.image).collect::<Vec<f64>>())
-        });
-        self.flows += 2;
-        let [Some(ahead), Some(behind)] = images else {
-            out.fill(f64::NAN);
-            return;
-        };
-        for (row, (ahead, behind)) in ahead.iter().zip(behind).enumerate() {
-            out[(row, at)] = (ahead - behind) / (2.0 * step) / self.size;
+        let held = border.iter().enumerate().all(|(j, entry)| j == at || *entry == 0.0);
+        let mut matrix = self.jacobian_at_parameter(z)?;
+        if !held || right[at] != 0.0 {
+            self.add_rate(z, &mut matrix)?;
         }
-        for (target, _) in self.at.iter().flat_map(|at| &at.kept) {
-            out[(at - 1 - self.orbits.size() + target, at)] = 0.0;
-        }
-    }
-
-    fn jacobian_at_parameter(&mut self, z: &[f64], out: &mut Mat<f64>) {
-        out.fill(0.0);
-        if !self.evaluate(z, true) {
-            out.fill(f64::NAN);
-            return;
-        }
-        let (all, size) = (z.len() - 2, self.orbits.size());
-        let Some(at) = &self.at else { return };
-        let count = at.segments.len();
-        for (number, one) in at.segments.iter().enumerate() {
-            let (first, next) = (number * size, (number + 1) % count * size);
-            // A segment lasts π/(m ω), or 2π/(m ω); the end of the last one of half a period is mirrored.
-            let mirrored = if self.is_symmetric() && number + 1 == count { 1.0 } else { -1.0 };
-            let span = self.orbits.span();
-            let shorter = mirrored * span / (count as f64 * z[all] * z[all]) / self.size;
-            for i in 0..size {
-                for j in 0..size {
-                    out[(first + i, first + j)] = one.derivative[(i, j)] / self.size;
-                }
-                out[(first + i, all)] = one.rate[i] * shorter;
-                out[(first + i, next + i)] -= self.size.recip();
-            }
-        }
-        for (j, d) in self.drift.iter().enumerate() {
-            out[(all, j)] = d / self.size;
-        }
-        for (target, form) in &at.kept {
-            let row = all - size + target;
-            (0..z.len()).for_each(|j| out[(row, j)] = 0.0);
-            form.iter().enumerate().for_each(|(j, f)| out[(row, j)] = f / self.size);
-        }
+        factorised_with(matrix, border, right, weights)
     }
 
     fn weights(&self, z: &[f64]) -> Vec<f64> {
