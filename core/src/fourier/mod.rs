@@ -5,6 +5,7 @@ mod harmonics;
 mod instants;
 mod interval_sums;
 mod lanes;
+mod legendre;
 mod panel;
 mod row_sums;
 mod turning_points;
@@ -14,6 +15,7 @@ pub use harmonics::Harmonics;
 pub use interval_sums::IntervalSums;
 pub(crate) use lanes::{cos_sin, doubled, rotate, sum, SERIES};
 pub use lanes::{Lanes, NODES};
+pub(crate) use legendre::{gauss_legendre, legendre};
 pub use panel::{Interval, Panel};
 pub use turning_points::{SampleTable, TurningPoint};
 

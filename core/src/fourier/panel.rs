@@ -1,9 +1,9 @@
 //! Gauss panels: integrals of smooth functions times the basis over an interval of angles.
 
 use super::lanes::{cos_sin, doubled, rotate, sum, Lanes, NODES};
+use super::legendre::{gauss_legendre, legendre};
 use super::{Harmonics, IntervalSums};
 use pulp::{Simd, WithSimd};
-use std::f64::consts::PI;
 use std::sync::OnceLock;
 
 /// Largest product of the highest harmonic and the length of a panel at which the rule integrates
@@ -24,36 +24,16 @@ impl Rule {
         RULE.get_or_init(|| {
             let (mut node, mut weight) = ([0.0; NODES], [0.0; NODES]);
             let mut tail = [[0.0; NODES]; 2];
-            for i in 0..NODES {
-                let mut x = -((i as f64 + 0.75) / (NODES as f64 + 0.5) * PI).cos();
-                for _ in 0..10 {
-                    let [.., before, own] = legendre(x);
-                    x -= own * (x * x - 1.0) / (NODES as f64 * (x * own - before));
-                }
-                let [last, before, own] = legendre(x);
-                let slope = NODES as f64 * (x * own - before) / (x * x - 1.0);
-                node[i] = x;
-                weight[i] = 2.0 / ((1.0 - x * x) * slope * slope);
-                for (tail, (value, degree)) in
-                    tail.iter_mut().zip([(last, NODES - 2), (before, NODES - 1)])
-                {
-                    tail[i] = weight[i] * value * (degree as f64 + 0.5);
+            for (i, (x, own)) in gauss_legendre(NODES).into_iter().enumerate() {
+                (node[i], weight[i]) = (x, own);
+                let p = legendre(NODES, x);
+                for (tail, degree) in tail.iter_mut().zip([NODES - 2, NODES - 1]) {
+                    tail[i] = own * p[degree] * (degree as f64 + 0.5);
                 }
             }
             Self { node, weight, tail }
         })
     }
-}
-
-/// The Legendre polynomials of the degrees `NODES − 2`, `NODES − 1` and `NODES`.
-fn legendre(x: f64) -> [f64; 3] {
-    let mut last = [0.0, 1.0, x];
-    for n in 2..=NODES {
-        let n = n as f64;
-        let next = ((2.0 * n - 1.0) * x * last[2] - (n - 1.0) * last[1]) / n;
-        last = [last[1], last[2], next];
-    }
-    last
 }
 
 /// How a function behaves at an end of an interval.

@@ -13,6 +13,7 @@
 use super::contact_state::ContactState;
 use super::linear_phase::LinearPhase;
 use super::propagator::Propagators;
+use super::quadrature::nodes_of_waves;
 use super::transition::Transition;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par};
@@ -26,8 +27,6 @@ const POINTS: usize = 2;
 const FARTHEST: f64 = 16.0;
 const IN_ALL: f64 = 75.0;
 const BEGINS: f64 = 8.0;
-/// Error of the quadrature, relative to its sum.
-const ROUNDING: f64 = 1e-18;
 
 /// A point whose velocity moves strains at other rates.
 pub(super) struct Change {
@@ -104,7 +103,7 @@ impl Transition<'_> {
         let roots = self.roots();
         let [old, new] = [before, after].map(|regime| self.rates(regime, &roots));
         let (size, modes) = (total.nrows(), self.weight.len());
-        let count = nodes(0.5 * lag.abs() * self.system.rate(0.0));
+        let count = nodes_of_waves(0.5 * lag.abs() * self.system.rate(0.0));
         let rule = known.quadrature.rule(count);
         let times: Vec<f64> = rule.iter().map(|(share, _)| share * lag).collect();
         let jump = phase.onset.as_ref().and_then(|onset| self.jump_of(onset));
@@ -180,16 +179,6 @@ impl Transition<'_> {
         }
         (changed.len() <= POINTS).then_some(changed)
     }
-}
-
-/// Nodes over which the quadrature of waves that turn by 4 x has no error but rounding, `x^2m / (2m)!`.
-fn nodes(x: f64) -> usize {
-    let (mut count, mut error) = (0, 1.0);
-    while error > ROUNDING {
-        count += 1;
-        error *= x * x / ((2 * count) * (2 * count - 1)) as f64;
-    }
-    count
 }
 
 #[cfg(test)]

@@ -1,9 +1,12 @@
 //! Gauss-Legendre quadrature on the unit interval.
 
 use super::polynomial::DEGREE;
+use crate::fourier::gauss_legendre;
 use faer::Mat;
 use std::collections::BTreeMap;
-use std::f64::consts::PI;
+
+/// Error of the quadrature of a wave, relative to it.
+const ROUNDING: f64 = 1e-18;
 
 /// Nodes and weights by number of nodes, each computed once.
 #[derive(Debug, Default)]
@@ -32,37 +35,22 @@ impl Quadrature {
 
     fn known(&mut self, count: usize) -> &Rule {
         self.rules.entry(count).or_insert_with(|| {
-            let nodes = gauss_legendre(count);
+            let rule = gauss_legendre(count).into_iter();
+            let nodes: Vec<_> = rule.map(|(x, w)| (0.5 * (1.0 + x), 0.5 * w)).collect();
             let powers = Mat::from_fn(DEGREE + 1, count, |n, node| nodes[node].0.powi(n as i32));
             Rule { nodes, powers }
         })
     }
 }
 
-/// Newton's method on the Legendre polynomial from the Chebyshev nodes.
-fn gauss_legendre(count: usize) -> Vec<(f64, f64)> {
-    let degree = count as f64;
-    (0..count)
-        .map(|i| {
-            let mut x = (PI * (i as f64 + 0.75) / (degree + 0.5)).cos();
-            let mut slope = 1.0;
-            for _ in 0..20 {
-                let (mut last, mut value) = (0.0, 1.0);
-                for n in 0..count {
-                    let n = n as f64;
-                    let next = ((2.0 * n + 1.0) * x * value - n * last) / (n + 1.0);
-                    (last, value) = (value, next);
-                }
-                slope = degree * (x * value - last) / (x * x - 1.0);
-                let step = value / slope;
-                x -= step;
-                if step.abs() < 1e-15 {
-                    break;
-                }
-            }
-            (0.5 * (1.0 - x), 1.0 / ((1.0 - x * x) * slope * slope))
-        })
-        .collect()
+/// Nodes over which the quadrature of waves that turn by 4 x has no error but rounding, `x^2m / (2m)!`.
+pub(crate) fn nodes_of_waves(x: f64) -> usize {
+    let (mut count, mut error) = (0, 1.0);
+    while error > ROUNDING {
+        count += 1;
+        error *= x * x / ((2 * count) * (2 * count - 1)) as f64;
+    }
+    count
 }
 
 #[cfg(test)]

@@ -3,7 +3,8 @@
 use crate::balance::Point;
 use crate::contact::{PointState, PointSummary, SlipPlane};
 use crate::motion::{
-    ContactState, Event, Extremes, FlowEvent, FlowSegment, ModalSystem, Quadrature, Turn, Values,
+    nodes_of_waves, ContactState, Event, Extremes, FlowEvent, FlowSegment, ModalSystem, Quadrature,
+    Turn, Values,
 };
 use crate::solve::dot;
 use faer::linalg::matmul::matmul;
@@ -13,8 +14,6 @@ use std::f64::consts::TAU;
 /// Quadrature nodes of a segment in which contacts slip little by little or in a plane, beyond those that the
 /// highest harmonic needs: its power series has few significant terms.
 const NODES: usize = 20;
-/// Error of the quadrature of a wave, relative to it.
-const ROUNDING: f64 = 1e-18;
 /// Distance from a limit, relative to it, at which a contact touches it, …
 const TOUCHES: f64 = 1e-7;
 /// … and share of a period that is but an instant: one of slip by rounding lasts as long as its root.
@@ -285,19 +284,12 @@ impl<'a> Survey<'a> {
 }
 
 /// Nodes that a segment needs over which the highest harmonic turns by an angle. No wave in a linear motion
-/// turns by more than the length of its series, and energies by twice that: with m nodes the quadrature of
-/// a wave that turns by 4 x has an error of about `x^2m / (2m)!`.
+/// turns by more than the length of its series, and energies by twice that.
 fn nodes(segment: &FlowSegment<'_>, angle: f64) -> usize {
     if segment.series.is_nonlinear() {
         return NODES + (0.5 * angle).ceil() as usize;
     }
-    let x = 0.25 * (segment.length + segment.length.max(angle));
-    let (mut count, mut error) = (0, 1.0);
-    while error > ROUNDING {
-        count += 1;
-        error *= x * x / ((2 * count) * (2 * count - 1)) as f64;
-    }
-    count
+    nodes_of_waves(0.25 * (segment.length + segment.length.max(angle)))
 }
 
 /// The points that slip on a stretch.

@@ -1,5 +1,6 @@
 //! Collocation at the nodes of Gauss-Legendre quadrature.
 
+use crate::fourier::{gauss_legendre, legendre};
 use std::sync::OnceLock;
 
 /// Nodes of a panel.
@@ -21,17 +22,6 @@ pub(super) struct Collocation {
     pub(super) barycentric: Lanes,
 }
 
-/// Legendre polynomials of orders up to NODES at x in [−1, 1].
-pub(super) fn legendre(x: f64) -> [f64; NODES + 1] {
-    let mut p = [1.0; NODES + 1];
-    p[1] = x;
-    for k in 1..NODES {
-        let n = k as f64;
-        p[k + 1] = ((2.0 * n + 1.0) * x * p[k] - n * p[k - 1]) / (n + 1.0);
-    }
-    p
-}
-
 impl Collocation {
     pub(super) fn get() -> &'static Self {
         static TABLE: OnceLock<Collocation> = OnceLock::new();
@@ -39,21 +29,10 @@ impl Collocation {
     }
 
     fn new() -> Self {
-        let n = NODES as f64;
-        let slope =
-            |x: f64, p: &[f64; NODES + 1]| n * (x * p[NODES] - p[NODES - 1]) / (x * x - 1.0);
-        let node: Lanes = std::array::from_fn(|j| {
-            let mut x = -(std::f64::consts::PI * (j as f64 + 0.75) / (n + 0.5)).cos();
-            for _ in 0..20 {
-                let p = legendre(x);
-                x -= p[NODES] / slope(x, &p);
-            }
-            x
-        });
-        let at = node.map(legendre);
-        let weight: Lanes = std::array::from_fn(|j| {
-            1.0 / ((1.0 - node[j] * node[j]) * slope(node[j], &at[j]).powi(2))
-        });
+        let rule = gauss_legendre(NODES);
+        let node: Lanes = std::array::from_fn(|j| rule[j].0);
+        let weight: Lanes = std::array::from_fn(|j| 0.5 * rule[j].1);
+        let at = node.map(|x| legendre(NODES, x));
         let integral = std::array::from_fn(|j| {
             std::array::from_fn(|i| {
                 let terms = (1..NODES).map(|k| (at[i][k + 1] - at[i][k - 1]) * at[j][k]);
