@@ -4,6 +4,7 @@
 
 mod common;
 
+use common::curves::grid;
 use common::{beam_pair, snecma_beam};
 use stickslip_core::balance::{
     sweep, sweep_range, ForcedBalance, HarmonicChoice, Method, PointStatus, Settings, Solution,
@@ -13,10 +14,6 @@ use stickslip_core::solve::FirstJacobian;
 
 const LOADS: [f64; 8] = [0.938, 2.188, 6.563, 16.563, 20.313, 25.0, 31.475, 38.438];
 const BROYDEN: Method = Method::Broyden(FirstJacobian::Exact);
-
-fn grid() -> Vec<f64> {
-    (0..400).map(|i| 20.0 + 330.0 * f64::from(i) / 399.0).collect()
-}
 
 fn solve(model: &Model, highest: usize, method: Method, omega: &[f64]) -> Solution {
     let harmonics = HarmonicChoice::Fixed(highest);
@@ -48,7 +45,7 @@ fn difference(one: &Solution, other: &Solution) -> (f64, f64) {
 /// No point needs homotopy, and hardly any a second Jacobian.
 #[test]
 fn every_point_of_every_load_agrees_with_newton() {
-    let omega = grid();
+    let omega = grid(20.0, 350.0, 400);
     for load in LOADS {
         let model = snecma_beam(load).model();
         for highest in [1, 3, 9, 15, 21] {

@@ -5,6 +5,7 @@
 mod common;
 
 use common::damper::Random;
+use common::tangents::largest;
 use faer::{c64, Mat};
 use stickslip_core::balance::{ForcedBalance, HarmonicChoice, PointStatus, Settings};
 use stickslip_core::contact::{Backbone, ContactLaw, Jenkins, Masing, Residual};
@@ -96,10 +97,6 @@ fn run(model: &Model, omega: f64, scheme: Scheme) -> History {
     let settings =
         TransientSettings { omega, scheme, periods: 12, tolerance: None, samples: 32, keep: None };
     transient(model, &settings, None, &all(model), &|_| true).unwrap()
-}
-
-fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |most: f64, x| most.max(x.abs()))
 }
 
 #[test]

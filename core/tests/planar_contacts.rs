@@ -5,6 +5,7 @@ mod common;
 
 use common::differences::{assert_multipliers, multiplier_error};
 use common::planar::{block, planar_system, Pad, Planar};
+use common::tangents::largest;
 use faer::{c64, mat, Mat};
 use proptest::prelude::*;
 use stickslip_core::balance::PointStatus;
@@ -31,10 +32,6 @@ fn orbit(system: &Planar, omega: f64) -> Orbit {
     let observe: Vec<usize> = (0..system.dofs()).collect();
     let mut orbits = PeriodicOrbits::new(&model, OrbitSettings::default(), &observe).unwrap();
     orbits.solve(omega, None).unwrap()
-}
-
-fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |most, value| most.max(value.abs()))
 }
 
 /// Two codes agree on these values: greatest |u_t|, u_n, least u_n, mean u_n.

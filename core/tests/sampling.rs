@@ -5,6 +5,7 @@
 
 mod common;
 
+use common::curves::grid;
 use common::damper::{damped_beams, DOFS};
 use common::{snecma_beam, SLIP_FORCE, STIFFNESS};
 use faer::{c64, Mat};
@@ -26,10 +27,6 @@ fn fixed(highest: usize, tolerance: f64) -> Settings {
 
 fn marched(settings: Settings, samples: SampleChoice) -> Settings {
     Settings { evaluation: Evaluation::Marched(samples), ..settings }
-}
-
-fn grid(from: f64, to: f64, count: usize) -> Vec<f64> {
-    (0..count).map(|i| from + (to - from) * i as f64 / (count - 1) as f64).collect()
 }
 
 fn solve(model: &Model, settings: Settings, observe: &[usize], omega: &[f64]) -> Solution {

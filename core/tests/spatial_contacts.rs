@@ -6,6 +6,7 @@ mod common;
 
 use common::chain;
 use common::differences::{assert_multipliers, multiplier_error};
+use common::tangents::largest;
 use faer::{c64, Mat};
 use proptest::prelude::*;
 use stickslip_core::balance::PointStatus;
@@ -52,10 +53,6 @@ fn orbit(model: &Model, omega: f64) -> Orbit {
     let observe: Vec<usize> = (0..model.compliance().dofs()).collect();
     let mut orbits = PeriodicOrbits::new(model, OrbitSettings::default(), &observe).unwrap();
     orbits.solve(omega, None).unwrap()
-}
-
-fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |most, value| most.max(value.abs()))
 }
 
 /// Two codes agree on these values to 3e-5.

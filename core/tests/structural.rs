@@ -5,6 +5,7 @@
 mod common;
 
 use common::damper::{stiffness, Random, LIMITS};
+use common::tangents::{difference, largest, motion};
 use faer::{c64, mat, Mat};
 use std::f64::consts::TAU;
 use stickslip_core::contact::{
@@ -13,30 +14,10 @@ use stickslip_core::contact::{
 };
 use stickslip_core::fourier::{Harmonics, SampleTable};
 
-fn motion<'a>(table: &'a SampleTable, displacement: &'a [f64]) -> Motion<'a> {
-    Motion { table, displacement, residual: Residual::Centred }
-}
-
 fn load(law: &dyn ContactLaw, table: &SampleTable, u: &[f64]) -> SlipLoad {
     let mut load = SlipLoad::default();
     law.slip_load(motion(table, u), true, &mut load);
     load
-}
-
-/// A displacement whose harmonics fall off, about `size` large.
-fn random_series(random: &mut Random, table: &SampleTable, points: usize, size: f64) -> Vec<f64> {
-    let slots = table.harmonics().slots();
-    (0..points * slots)
-        .map(|i| size * random.next() / (1.0 + (i % slots) as f64 / 2.0).powi(2))
-        .collect()
-}
-
-fn largest(x: &[f64]) -> f64 {
-    x.iter().fold(0.0, |m, x| m.max(x.abs()))
-}
-
-fn difference(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).fold(0.0, |m, (a, b)| m.max((a - b).abs()))
 }
 
 #[test]
@@ -48,7 +29,7 @@ fn tangents_of_random_dampers_match_differences() {
         let table = SampleTable::new(Harmonics::new(1 + case % 7, case % 2 == 0));
         let law = random.damper(points, 1.0, 1.0);
         let size = 10f64.powf(random.between(-1.0, 2.0));
-        let u = random_series(&mut random, &table, points, size);
+        let u = random.series(&table, points, size);
 
         let exact = load(&law, &table, &u);
         slipped += usize::from(exact.active);
@@ -126,7 +107,7 @@ fn random_marches_approach_the_exact_passage() {
         let table = SampleTable::new(Harmonics::new(3 + case % 4, case % 2 == 0));
         let law = random.damper(points, 1.0, 1.0);
         let size = 10f64.powf(random.between(-0.5, 1.5));
-        let u = random_series(&mut random, &table, points, size);
+        let u = random.series(&table, points, size);
 
         let exact = load(&law, &table, &u).value;
         let errors: Vec<f64> = [1024, 8192]
@@ -156,7 +137,7 @@ fn two_points_of_which_one_never_slips_are_a_jenkins_element() {
     for case in 0..40 {
         let table = SampleTable::new(Harmonics::new(1 + case % 9, case % 2 == 0));
         let slots = table.harmonics().slots();
-        let u = random_series(&mut random, &table, 2, 1.0 + case as f64 / 4.0);
+        let u = random.series(&table, 2, 1.0 + case as f64 / 4.0);
         let relative: Vec<f64> = (0..slots).map(|i| u[i] - u[slots + i]).collect();
         let rest = Motion { table: &table, displacement: &relative, residual: Residual::FromRest };
         let expected = jenkins.force_history(rest, 64);

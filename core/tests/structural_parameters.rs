@@ -6,16 +6,11 @@
 mod common;
 
 use common::damper::{stiffness, Random, LIMITS};
+use common::tangents::{difference, largest, motion};
 use faer::{mat, Mat};
 use std::collections::BTreeSet;
-use stickslip_core::contact::{
-    Aft, ContactLaw, Jenkins, Motion, PointState, Residual, SlipLoad, StructuralDamper,
-};
+use stickslip_core::contact::{Aft, ContactLaw, Jenkins, PointState, SlipLoad, StructuralDamper};
 use stickslip_core::fourier::{Harmonics, SampleTable};
-
-fn motion<'a>(table: &'a SampleTable, displacement: &'a [f64]) -> Motion<'a> {
-    Motion { table, displacement, residual: Residual::Centred }
-}
 
 /// Series of the contact forces `D u − q`.
 fn force(law: &dyn ContactLaw, table: &SampleTable, u: &[f64]) -> Vec<f64> {
@@ -36,21 +31,6 @@ fn slope(law: &dyn ContactLaw, table: &SampleTable, u: &[f64], index: usize) -> 
     let mut slope = vec![f64::NAN; u.len()];
     law.parameter_slope(motion(table, u), index, &mut slope);
     slope
-}
-
-fn largest(x: &[f64]) -> f64 {
-    x.iter().fold(0.0, |m, x| m.max(x.abs()))
-}
-
-fn difference(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).fold(0.0, |m, (a, b)| m.max((a - b).abs()))
-}
-
-fn random_series(random: &mut Random, table: &SampleTable, points: usize, size: f64) -> Vec<f64> {
-    let slots = table.harmonics().slots();
-    (0..points * slots)
-        .map(|i| size * random.next() / (1.0 + (i % slots) as f64 / 2.0).powi(2))
-        .collect()
 }
 
 /// Deviation of a slope from central differences, the best of several steps: now and then one steps
@@ -93,7 +73,7 @@ fn slopes_of_the_dissertations_damper_match_differences_in_every_slip_set() {
     for case in 0..60 {
         let table = SampleTable::new(Harmonics::new(1 + case % 6, case % 3 != 0));
         let size = 10f64.powf(random.between(-6.0, -2.5));
-        let u = random_series(&mut random, &table, 4, size);
+        let u = random.series(&table, 4, size);
         sets.extend(slip_sets(&law, &table, &u));
         for index in 0..5 {
             let error = error(&law, &table, &u, index);
@@ -113,7 +93,7 @@ fn slopes_of_random_dampers_match_differences() {
         let table = SampleTable::new(Harmonics::new(1 + case % 7, case % 2 == 0));
         let law = random.damper(points, 1.0, 1.0);
         let size = 10f64.powf(random.between(-1.0, 2.0));
-        let u = random_series(&mut random, &table, points, size);
+        let u = random.series(&table, points, size);
         slipped += usize::from(slip_sets(&law, &table, &u).len() > 1);
         for (index, parameter) in law.parameters().iter().enumerate() {
             if parameter.value > 0.0 {
@@ -136,7 +116,7 @@ fn slopes_of_two_points_are_those_of_a_jenkins_element() {
         // Only odd harmonics: a mean motion sets them apart where nothing slips.
         let table = SampleTable::new(Harmonics::new(1 + case % 9, true));
         let slots = table.harmonics().slots();
-        let u = random_series(&mut random, &table, 2, 0.1 + case as f64 / 10.0);
+        let u = random.series(&table, 2, 0.1 + case as f64 / 10.0);
         let apart: Vec<f64> = (0..slots).map(|s| u[s] - u[slots + s]).collect();
         let by_force = slope(&damper, &table, &u, 0);
         let by_factor = slope(&damper, &table, &u, 2);
@@ -181,7 +161,7 @@ fn the_first_traces_of_friction_and_of_stiffness_count() {
 fn a_factor_on_the_stiffness_is_the_stiffness_times_it_and_can_be_taken_back() {
     let law = StructuralDamper::new(stiffness().as_ref(), &LIMITS).unwrap();
     let table = SampleTable::new(Harmonics::new(5, true));
-    let u = random_series(&mut Random(2), &table, 4, 3e-4);
+    let u = Random(2).series(&table, 4, 3e-4);
     let twice: Mat<f64> = faer::Scale(2.0) * stiffness();
     let expected = StructuralDamper::new(twice.as_ref(), &LIMITS).unwrap();
     let doubled = law.with_parameter(4, 2.0).unwrap();
@@ -210,7 +190,7 @@ fn a_march_approaches_the_slopes() {
     let spring = mat![[3.0, -3.0], [-3.0, 3.0]];
     let law = StructuralDamper::new(spring.as_ref(), &[0.7, 2.0]).unwrap();
     let table = SampleTable::new(Harmonics::new(5, true));
-    let u = random_series(&mut Random(8), &table, 2, 1.0);
+    let u = Random(8).series(&table, 2, 1.0);
     for index in [0, 2] {
         let exact = slope(&law, &table, &u, index);
         assert!(largest(&exact) > 0.1);

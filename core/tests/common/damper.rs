@@ -3,6 +3,7 @@
 use super::{snecma_beam, System};
 use faer::{c64, mat, Mat};
 use stickslip_core::contact::{ContactLaw, StructuralDamper};
+use stickslip_core::fourier::SampleTable;
 use stickslip_core::model::{Contact, Model};
 use stickslip_core::structure::{HarmonicLoad, Structure};
 
@@ -81,6 +82,14 @@ impl Random {
 
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
         low + 0.5 * (self.next() + 1.0) * (high - low)
+    }
+
+    /// Displacements whose harmonics fall off, about `size` large.
+    pub fn series(&mut self, table: &SampleTable, points: usize, size: f64) -> Vec<f64> {
+        let slots = table.harmonics().slots();
+        (0..points * slots)
+            .map(|i| size * self.next() / (1.0 + (i % slots) as f64 / 2.0).powi(2))
+            .collect()
     }
 
     /// A random damper of some points: links between them, now and then to the ground, limits

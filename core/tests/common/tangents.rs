@@ -54,6 +54,21 @@ pub fn series(table: &SampleTable, terms: &[Term]) -> Vec<f64> {
     u
 }
 
+/// A motion whose stuck contacts hold nothing on average.
+pub fn motion<'a>(table: &'a SampleTable, displacement: &'a [f64]) -> Motion<'a> {
+    Motion { table, displacement, residual: Residual::Centred }
+}
+
+/// Largest absolute value.
+pub fn largest(x: &[f64]) -> f64 {
+    x.iter().fold(0.0, |m, x| m.max(x.abs()))
+}
+
+/// Largest difference.
+pub fn difference(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).fold(0.0, |m, (a, b)| m.max((a - b).abs()))
+}
+
 /// What a law answers a motion with, and the tangent.
 pub fn load(law: &dyn ContactLaw, table: &SampleTable, u: &[f64], residual: Residual) -> SlipLoad {
     let mut load = SlipLoad::default();

@@ -272,6 +272,7 @@ mod tests {
     use super::*;
     use crate::contact::{Closure, Coulomb, Motion, Residual};
     use crate::fourier::{Harmonics, SampleTable};
+    use crate::test_numbers::numbers;
 
     fn circle_of(pull: &[f64], highest: usize) -> ([f64; 2], Vec<f64>, f64) {
         let table = SampleTable::new(Harmonics::new(highest, false));
@@ -286,13 +287,7 @@ mod tests {
     /// No centre nearby has a smaller circle, and the derivative is that of differences.
     #[test]
     fn the_circle_is_the_smallest() {
-        let mut seed = 1_u64;
-        let mut random = move || {
-            seed = seed
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            (seed >> 33) as f64 / f64::from(1_u32 << 30) - 1.0
-        };
+        let mut random = numbers();
         for case in 0..40 {
             let highest = 1 + case % 7;
             let slots = 2 * highest + 1;

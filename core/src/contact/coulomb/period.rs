@@ -277,19 +277,14 @@ mod tests {
     use super::*;
     use crate::contact::{Closure, Motion};
     use crate::fourier::{Harmonics, SampleTable};
+    use crate::test_numbers::numbers;
 
     /// Rough motions, up to three thousand times as far as the contact slips at, along a line and beside
     /// it: rounding at the limit neither stops a march nor takes the traction out of the cone, and a lap that
     /// begins outside of it finds the cycle, too.
     #[test]
     fn rough_motions_stay_within_the_cone() {
-        let mut seed = 7_u64;
-        let mut random = move || {
-            seed = seed
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            (seed >> 33) as f64 / f64::from(1_u32 << 30) - 1.0
-        };
+        let mut random = numbers();
         let law = Coulomb::new(2, 0.3, 1.0, Some(1.0), Closure::Preload(1.0)).unwrap();
         for case in 0..60 {
             let table = SampleTable::new(Harmonics::new(11 + 10 * (case % 5), false));
