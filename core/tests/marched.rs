@@ -9,8 +9,8 @@ use common::coupled::{Coupled, SLIP_FORCE, STIFFNESS};
 use common::tangents::{load, series, table_of, tangent_error, ONCE, STATES};
 use faer::{mat, Mat};
 use stickslip_core::contact::{
-    Aft, ContactLaw, HarmonicForce, Jenkins, Motion, PointSummary, Residual, ReturnMapJacobian,
-    Slider, SlipElement as _, SlipLoad,
+    Aft, BoucWen, ContactLaw, HarmonicForce, Jenkins, Motion, PointSummary, Residual,
+    ReturnMapJacobian, Slider, SlipElement as _, SlipLoad,
 };
 use stickslip_core::fourier::{Harmonics, SampleTable};
 
@@ -35,6 +35,23 @@ fn parameter_slopes_approach_those_of_the_closed_form() {
         let pairs = slopes[0].iter().zip(&slopes[1]);
         let error = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(size > 0.0 && error < 1e-3 * size, "{parameter}: {error:e} of {size:e}");
+    }
+}
+
+/// However little force the slip limit of a contact is: where its stiffness begins, it holds what a spring holds.
+#[test]
+fn a_stiffness_of_zero_is_varied_by_a_step_of_its_scale() {
+    let table = SampleTable::new(Harmonics::new(3, true));
+    let displacement = [0.9, 0.2, 0.05, -0.04];
+    for (units, limit) in [(1.0, 1e-9), (1e-3, 1e6)] {
+        let displacement = displacement.map(|u| units * u);
+        let motion =
+            Motion { table: &table, displacement: &displacement, residual: Residual::Centred };
+        let law = Box::new(BoucWen::new(0.0, limit, 1.0, 0.5).unwrap());
+        let mut slope = [f64::NAN; 4];
+        Aft::new(law, 512).unwrap().parameter_slope(motion, 0, &mut slope);
+        let off = slope.iter().zip(&displacement).map(|(own, u)| (own - u).abs());
+        assert!(off.fold(0.0, f64::max) < 1e-4 * units, "{slope:?} {displacement:?}");
     }
 }
 

@@ -174,14 +174,20 @@ impl<L: Deref<Target: ContactLaw>> HarmonicForce for Aft<L> {
     /// By central differences: a march has no derivative in a parameter that would serve all laws.
     fn parameter_slope(&self, motion: Motion<'_>, index: usize, out: &mut [f64]) {
         out.fill(0.0);
-        let Parameter { name, value, .. } = self.law.parameters()[index];
-        // What may be zero has the scale of the motion.
+        let parameters = self.law.parameters();
+        let Parameter { name, value, factor, .. } = parameters[index];
+        // What is zero has the scale of the motion, and of what the law has of its kind.
         let moved = motion.displacement.iter().fold(0.0, |most: f64, u| most.max(u.abs()));
+        let is_force = |name: &str| name == Parameter::SLIP_FORCE || name == "preload";
+        let forces = parameters.iter().filter(|own| is_force(own.name) && own.value.is_finite());
+        let force = forces.fold(0.0, |most: f64, own| most.max(own.value.abs()));
+        let stiffness = self.law.stiffness().norm_max().max(force / moved);
         let step = DIFFERENCE
             * match name {
                 "gap" => value.abs().max(moved),
                 _ if value != 0.0 => value.abs(),
-                Parameter::SLIP_FORCE => moved * self.law.stiffness().norm_max(),
+                name if is_force(name) => moved * stiffness,
+                name if name.ends_with("stiffness") && !factor && stiffness > 0.0 => stiffness,
                 _ => 1.0,
             };
         if !(step > 0.0 && step.is_finite()) {
