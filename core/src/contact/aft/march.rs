@@ -31,6 +31,24 @@ pub(super) struct Step {
     pub(super) spring: Option<ReturnMapJacobian>,
     /// Whether that is the derivative at hand.
     pub(super) springs: bool,
+    /// Derivative of the force in the state before the last step of [`Aft::advance_derived`].
+    pub(super) force_by_state: Vec<f64>,
+}
+
+impl Step {
+    /// None yet, in a state at the first instant.
+    fn first(samples: &Samples, state: Vec<f64>) -> Self {
+        let after = samples.at(0).to_vec();
+        Self {
+            state,
+            force: vec![0.0; after.len()],
+            jacobian: ReturnMapJacobian::default(),
+            after,
+            spring: None,
+            springs: false,
+            force_by_state: Vec::new(),
+        }
+    }
 }
 
 impl<L: Deref<Target: ContactLaw>> Aft<L> {
@@ -95,31 +113,16 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
 
     /// The first instant, reached without any slip as far as the law admits it.
     pub(super) fn start(&self, samples: &Samples, begun: &AssumedStart) -> Step {
-        let (before, state) = (&begun.displacement, begun.state.clone());
-        let mut step = Step {
-            state,
-            force: vec![0.0; before.len()],
-            jacobian: ReturnMapJacobian::default(),
-            after: samples.at(0).to_vec(),
-            spring: None,
-            springs: false,
-        };
+        let mut step = Step::first(samples, begun.state.clone());
         let Step { state, force, jacobian, after, .. } = &mut step;
-        self.law.return_map(before, after, state, force, Some(jacobian));
+        self.law.return_map(&begun.displacement, after, state, force, Some(jacobian));
         step
     }
 
     /// The first instant in a state that repeats.
     pub(super) fn step_from(&self, samples: &Samples, state: &[f64]) -> Step {
         let u = samples.at(0);
-        let mut step = Step {
-            state: state.to_vec(),
-            force: vec![0.0; u.len()],
-            jacobian: ReturnMapJacobian::default(),
-            after: u.to_vec(),
-            spring: None,
-            springs: false,
-        };
+        let mut step = Step::first(samples, state.to_vec());
         self.law.return_map(u, u, &mut step.state, &mut step.force, Some(&mut step.jacobian));
         // A step to where it is may round.
         step.state.copy_from_slice(state);
@@ -130,7 +133,7 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
     /// derivative of the step, if asked for.
     pub(super) fn advance(&self, samples: &Samples, n: usize, step: &mut Step, derived: bool) {
         let sign = if n == samples.count { samples.sign } else { 1.0 };
-        let Step { state, force, jacobian, after, spring, springs } = step;
+        let Step { state, force, jacobian, after, spring, springs, .. } = step;
         let (before, now) = (samples.at(n - 1), samples.at(n % samples.count));
         after.iter_mut().zip(now).for_each(|(after, now)| *after = sign * now);
         if !self.law.springs(before, after, state, force) {
@@ -147,6 +150,29 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
             jacobian.clone_from(spring);
             *springs = true;
         }
+    }
+
+    /// The same with the derivative, and whether that of the slip load changes. Until it does, instants are summed:
+    /// `told` are the sum of the basis and a tangent, to which goes what the instant before loses by itself.
+    pub(super) fn advance_derived(
+        &self,
+        samples: &Samples,
+        n: usize,
+        step: &mut Step,
+        rate: &Rate,
+        told: Option<[&mut [f64]; 2]>,
+    ) -> bool {
+        if let Some([sum, out]) = told {
+            let (basis, weight) = (rate.basis(samples, n - 1), 2.0 / samples.count as f64);
+            sum.iter_mut().zip(basis).for_each(|(sum, b)| *sum += weight * b);
+            if !step.springs {
+                rate.add_direct(&step.jacobian, weight, basis, out);
+            }
+        }
+        step.force_by_state.clone_from(&step.jacobian.force_by_state);
+        self.advance(samples, n, step, true);
+        let elastic = step.springs || rate.stays(&step.jacobian);
+        !elastic || step.force_by_state != step.jacobian.force_by_state
     }
 
     /// Marches until the state repeats.
@@ -261,15 +287,11 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
         slots: usize,
         out: &mut [f64],
     ) {
-        let stiffness = self.law.stiffness();
-        let state_stiffness = self.law.state_stiffness();
         let mut step = self.start(samples, begun);
-        let basis = |n: usize| &samples.basis[(n % samples.count) * slots..][..slots];
-        let mut rate = Rate::new(stiffness, state_stiffness.clone(), slots);
-        rate.follow(&step.jacobian, None, basis(0));
+        let mut rate = Rate::new(self.law.stiffness(), self.law.state_stiffness(), slots);
+        rate.follow(&step.jacobian, None, rate.basis(samples, 0));
         rate.begin(&step.jacobian, &begun.rate);
-        let weight = 2.0 / samples.count as f64;
-        let (mut sum, mut force_by_state) = (vec![0.0; slots], Vec::new());
+        let mut sum = vec![0.0; slots];
         let mut before = (step.state.clone(), rate.clone());
         for (round, restart) in rounds.iter().enumerate() {
             let last = round + 1 == rounds.len();
@@ -277,25 +299,17 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
             rate.restart(&before.1, restart);
             before = (step.state.clone(), rate.clone());
             for n in 1..=samples.count {
-                if last {
-                    // Between two slips the slip load keeps its derivative: instants are summed.
-                    sum.iter_mut().zip(basis(n - 1)).for_each(|(sum, b)| *sum += weight * b);
-                    if !step.springs {
-                        rate.add_direct(&step.jacobian, weight, basis(n - 1), out);
-                    }
-                }
-                force_by_state.clone_from(&step.jacobian.force_by_state);
-                self.advance(samples, n, &mut step, true);
+                let told = last.then_some([&mut sum[..], &mut *out]);
+                let changes = self.advance_derived(samples, n, &mut step, &rate, told);
                 let wraps = n == samples.count;
-                let elastic = step.springs || is_elastic(&step.jacobian, &state_stiffness);
-                let changes = !elastic || force_by_state != step.jacobian.force_by_state;
                 if wraps || changes {
                     if last {
-                        rate.add_to(&force_by_state, &mut sum, out);
+                        rate.add_to(&step.force_by_state, &mut sum, out);
                     }
                     let sign = if wraps { samples.sign } else { 1.0 };
                     if changes {
-                        rate.follow(&step.jacobian, Some(basis(n - 1)), &scaled(basis(n), sign));
+                        let [before, after] = [n - 1, n].map(|n| rate.basis(samples, n));
+                        rate.follow(&step.jacobian, Some(before), &scaled(after, sign));
                     }
                     rate.scale(sign);
                     step.state.iter_mut().for_each(|z| *z *= sign);

@@ -5,7 +5,8 @@
 //! derivative of the force, which are affine in R₀, too.
 
 use super::lap_derivative::LapDerivative;
-use super::rate::{is_elastic, Rate};
+use super::march::scaled;
+use super::rate::Rate;
 use super::restart::Restart;
 use super::samples::Samples;
 use crate::contact::{Aft, ContactLaw};
@@ -26,34 +27,24 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
         slots: usize,
         out: &mut [f64],
     ) -> bool {
-        let state_stiffness = self.law.state_stiffness();
         let mut step = self.step_from(samples, state);
-        let basis = |n: usize| &samples.basis[(n % samples.count) * slots..][..slots];
-        let mut rate = Rate::new(self.law.stiffness(), state_stiffness.clone(), slots);
+        let mut rate = Rate::new(self.law.stiffness(), self.law.state_stiffness(), slots);
         let mut lap = LapDerivative::new(state.len());
         let mut products = Products::new(self.law.displacements(), state.len(), slots);
-        let weight = 2.0 / samples.count as f64;
-        let (mut sum, mut force_by_state) = (vec![0.0; slots], Vec::new());
+        let mut sum = vec![0.0; slots];
         for n in 1..=samples.count {
-            // Between two slips the slip load keeps its derivative: instants are summed.
-            sum.iter_mut().zip(basis(n - 1)).for_each(|(sum, b)| *sum += weight * b);
-            if !step.springs {
-                rate.add_direct(&step.jacobian, weight, basis(n - 1), out);
-            }
-            force_by_state.clone_from(&step.jacobian.force_by_state);
-            self.advance(samples, n, &mut step, true);
+            let told = Some([&mut sum[..], &mut *out]);
+            let changes = self.advance_derived(samples, n, &mut step, &rate, told);
             let wraps = n == samples.count;
-            let elastic = step.springs || is_elastic(&step.jacobian, &state_stiffness);
-            let changes = !elastic || force_by_state != step.jacobian.force_by_state;
             if !wraps && !changes {
                 continue;
             }
-            products.add(&force_by_state, [rate.rows(), &lap.by], &sum, out);
+            products.add(&step.force_by_state, [rate.rows(), &lap.by], &sum, out);
             sum.fill(0.0);
             if changes {
                 let sign = if wraps { samples.sign } else { 1.0 };
-                let after: Vec<f64> = basis(n).iter().map(|b| sign * b).collect();
-                rate.follow(&step.jacobian, Some(basis(n - 1)), &after);
+                let [before, after] = [n - 1, n].map(|n| rate.basis(samples, n));
+                rate.follow(&step.jacobian, Some(before), &scaled(after, sign));
                 lap.advance(&step.jacobian.by_state);
             }
         }
