@@ -38,7 +38,7 @@ def damper_drawing(ax: Axes, /, damper: Damper, **options: Unpack[Drawing]) -> N
     shifts = _shifts(damper, size)
     corners: dict[str, list[Float]] = {name: [] for name in damper.bodies}
     for face in damper.faces:
-        ends = _face(ax, face, damper, shifts, size)
+        ends = _face(ax, face, shifts, size)
         corners[face.body] += ends
         if face.to in corners:
             corners[face.to] += ends
@@ -88,9 +88,7 @@ def _shifts(damper: Damper, size: float) -> dict[str, Float]:
     }
 
 
-def _face(
-    ax: Axes, face: Face, damper: Damper, shifts: dict[str, Float], size: float
-) -> list[Float]:
+def _face(ax: Axes, face: Face, shifts: dict[str, Float], size: float) -> list[Float]:
     """Draw a face; return its ends."""
     places = []
     for point in face.points:
