@@ -75,7 +75,7 @@ pub fn limit_cycles(
     };
     let mut out = match found {
         // The caller has ended the search: there is nothing to report.
-        Err(_) if stopped.get() => finder.result(&Sides::default(), Vec::new(), 0),
+        Err(_) if stopped.get() => finder.result(&Sides::default(), Vec::new()),
         other => other?,
     };
     out.interrupted = stopped.get();
@@ -149,7 +149,7 @@ impl Finder<'_> {
                 }
             }
             share.set(TRACING);
-            let mut out = self.result(&sides, cycles, highest);
+            let mut out = self.result(&sides, cycles);
             out.profile.evaluations = curve.evaluations;
             if let (Some(orbits), true) = (orbits, settings.stability) {
                 judge(self.judge(orbits, None), &mut out, interrupted, share);
@@ -205,7 +205,7 @@ impl Finder<'_> {
             cycles.push(cycle);
             points.push(z);
         }
-        let mut out = self.result(&sides, cycles, self.settings.reported);
+        let mut out = self.result(&sides, cycles);
         out.profile.evaluations = curve.flows;
         out.profile.factorisations = curve.matrices;
         if self.settings.stability {
@@ -354,7 +354,7 @@ impl Finder<'_> {
         }
     }
 
-    fn result(&self, sides: &Sides, cycles: Vec<Cycle>, harmonics: usize) -> LimitCycles {
+    fn result(&self, sides: &Sides, cycles: Vec<Cycle>) -> LimitCycles {
         LimitCycles {
             cycles,
             limit: sides.limit.and_then(|at| sides.turn(at)),
@@ -365,7 +365,6 @@ impl Finder<'_> {
             onset: self.onset.ratio,
             stuck_omega: self.onset.mode.omega,
             phase_dof: self.onset.dof,
-            harmonics,
             jumps: sides.branch.jumps,
             interrupted: false,
             profile: Profile::default(),

@@ -154,8 +154,6 @@ pub struct LimitCycles {
     pub stuck_omega: f64,
     /// DOF whose maximum is t = 0.
     pub phase_dof: usize,
-    /// Highest harmonic of the balance.
-    pub harmonics: usize,
     /// Places stepped over.
     pub jumps: usize,
     /// Whether the analysis was ended before it was complete.
