@@ -60,6 +60,12 @@ JOINT = (
 IDENTITY = {"omega": [1.0, 2.0], "seed": 3}
 
 
+def write(file: Path, text: str) -> Path:
+    """Return a file with a text."""
+    file.write_text(text)
+    return file
+
+
 def make(folder: Path) -> dict[str, Callable[[Path], object]]:
     """Write a sound file of every kind; return how each is read."""
     band = scipy.sparse.csc_array(BAND)

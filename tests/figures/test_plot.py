@@ -17,22 +17,8 @@ GRID = np.linspace(150.0, 250.0, 60)
 
 
 @pytest.fixture(scope="module")
-def frf():
-    return ss.forced_response(snecma_beam(), GRID, harmonics=9)
-
-
-@pytest.fixture(scope="module")
 def levels():
     return [ss.forced_response(snecma_beam(force), GRID, 5) for force in (0.938, 20.313, 38.438)]
-
-
-@pytest.fixture
-def ax():
-    """Axes that pyplot does not know, drawn at the end so that every warning shows."""
-    figure = Figure(layout="constrained")
-    yield figure.add_subplot()
-    figure.canvas.draw()
-    assert not plt.get_fignums()
 
 
 def lines(ax, group):

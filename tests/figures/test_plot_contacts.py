@@ -14,20 +14,6 @@ from stickslip.reference import snecma_beam
 GRID = np.linspace(150.0, 250.0, 60)
 
 
-@pytest.fixture(scope="module")
-def frf():
-    return ss.forced_response(snecma_beam(), GRID, harmonics=9)
-
-
-@pytest.fixture
-def ax():
-    """Axes that pyplot does not know, drawn at the end so that every warning shows."""
-    figure = Figure(layout="constrained")
-    yield figure.add_subplot()
-    figure.canvas.draw()
-    assert not plt.get_fignums()
-
-
 def legend(ax):
     return [text.get_text() for text in ax.get_legend().get_texts()]
 

@@ -10,11 +10,6 @@ from stickslip import plot
 from stickslip.reference import beam_pair, snecma_beam
 
 
-@pytest.fixture
-def ax():
-    return Figure().add_subplot()
-
-
 @pytest.fixture(scope="module")
 def exact():
     return ss.exact_response(snecma_beam(25.0), np.linspace(150.0, 300.0, 31))

@@ -29,11 +29,6 @@ def sweep():
     )
 
 
-@pytest.fixture
-def ax():
-    return Figure().add_subplot()
-
-
 def lines(ax, gid):
     return [one for one in ax.lines if one.get_gid() == gid]
 

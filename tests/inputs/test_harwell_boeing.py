@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from input_files import write
 from stickslip.errors import ModelError
 from stickslip.io import read_matrix
 from stickslip.io.harwell_boeing import read_harwell_boeing
@@ -34,16 +35,6 @@ F                          1             0
 few = settings(max_examples=40)
 
 
-@pytest.fixture
-def folder(tmp_path):
-    return tmp_path
-
-
-def write(file, text):
-    file.write_text(text)
-    return file
-
-
 def header(kind, rows=2, columns=2, entries=1, formats="(3I4) (3I4) (2E12.4)"):
     numbers = "".join(f"{number:14d}" for number in (rows, columns, entries, 0))
     pad = " " * 11
@@ -51,33 +42,33 @@ def header(kind, rows=2, columns=2, entries=1, formats="(3I4) (3I4) (2E12.4)"):
 
 
 @pytest.mark.parametrize("ending", [".hb", ".rua", ".rb", ".HBF"])
-def test_harwell_boeing_unsymmetric(folder, ending):
+def test_harwell_boeing_unsymmetric(tmp_path, ending):
     unsymmetric = np.array([[1.0, 2.0], [0.0, -3e-9], [0.0, 4.0]])
-    file = folder / f"k{ending}"
+    file = tmp_path / f"k{ending}"
     scipy.io.hb_write(file, scipy.sparse.csc_array(unsymmetric))
     np.testing.assert_array_equal(read_matrix(file), unsymmetric)
 
 
 @pytest.mark.parametrize("ending", [".rsa", ".hb", ".psa"])
-def test_harwell_boeing_symmetric_is_mirrored(folder, ending):
-    np.testing.assert_array_equal(read_matrix(write(folder / f"k{ending}", RSA)), K)
+def test_harwell_boeing_symmetric_is_mirrored(tmp_path, ending):
+    np.testing.assert_array_equal(read_matrix(write(tmp_path / f"k{ending}", RSA)), K)
 
 
-def test_harwell_boeing_of_the_upper_triangle(folder):
+def test_harwell_boeing_of_the_upper_triangle(tmp_path):
     text = header("rsa", entries=3) + "   1   2   4\n   1   1   2\n  1.0000E+00  2.0000E+00\n"
     text = text.replace(f"{3:14d}{1:14d}", f"{4:14d}{1:14d}", 1)
     text = text.replace(f"{1:14d}\n", f"{2:14d}\n", 1) + "  3.0000E+00\n"
-    np.testing.assert_array_equal(read_matrix(write(folder / "k.rsa", text)), [[1, 2], [2, 3]])
+    np.testing.assert_array_equal(read_matrix(write(tmp_path / "k.rsa", text)), [[1, 2], [2, 3]])
 
 
-def test_harwell_boeing_skew_is_mirrored_with_its_sign(folder):
+def test_harwell_boeing_skew_is_mirrored_with_its_sign(tmp_path):
     text = header("RZA") + "   1   2   2\n   2\n  5.0000E+00\n"
-    np.testing.assert_array_equal(read_matrix(write(folder / "g.hb", text)), [[0, -5], [5, 0]])
+    np.testing.assert_array_equal(read_matrix(write(tmp_path / "g.hb", text)), [[0, -5], [5, 0]])
 
 
-def test_harwell_boeing_integers(folder):
+def test_harwell_boeing_integers(tmp_path):
     text = header("ISA", formats="(3I4)  (3I4)  (3I4)") + "   1   2   2\n   2\n   7\n"
-    np.testing.assert_array_equal(read_matrix(write(folder / "g.hb", text)), [[0, 7], [7, 0]])
+    np.testing.assert_array_equal(read_matrix(write(tmp_path / "g.hb", text)), [[0, 7], [7, 0]])
 
 
 @pytest.mark.slow
@@ -164,21 +155,21 @@ BODY = "   1   2   2\n   2\n  5.0000E+00\n"
         (header("RZA") + "   1   2   2\n   1\n  5.0000E+00\n", "an entry on the diagonal is not 0"),
     ],
 )
-def test_refuses_harwell_boeing(folder, text, message):
+def test_refuses_harwell_boeing(tmp_path, text, message):
     with pytest.raises(ModelError, match=message) as refusal:
-        read_matrix(write(folder / "k.rsa", text))
+        read_matrix(write(tmp_path / "k.rsa", text))
     assert "\n" not in str(refusal.value)
 
 
-def scipy_file(folder, size=9):
+def scipy_file(tmp_path, size=9):
     random = np.random.default_rng(0).standard_normal((size, size))
-    file = folder / "k.rua"
+    file = tmp_path / "k.rua"
     scipy.io.hb_write(file, scipy.sparse.csc_array(random @ random.T))
     return file, file.read_text().splitlines(keepends=True)
 
 
-def test_a_line_twice_or_lost_is_refused_wherever_it_stands(folder):
-    file, lines = scipy_file(folder)
+def test_a_line_twice_or_lost_is_refused_wherever_it_stands(tmp_path):
+    file, lines = scipy_file(tmp_path)
     sound = read_matrix(file)
     for at in range(len(lines)):
         for damaged in (lines[: at + 1] + lines[at:], lines[:at] + lines[at + 1 :]):

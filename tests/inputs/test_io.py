@@ -13,6 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from input_files import write
 from stickslip.errors import ModelError
 from stickslip.io import read_matrix
 
@@ -22,53 +23,43 @@ K = np.array([[4.0, -1.5, 0.0], [-1.5, 3.0, -1e-12], [0.0, -1e-12, 5e7]])
 few = settings(max_examples=40)
 
 
-@pytest.fixture
-def folder(tmp_path):
-    return tmp_path
-
-
-def write(file, text):
-    file.write_text(text)
-    return file
-
-
 # sound files
 
 
-def test_npy(folder):
-    np.save(folder / "k.npy", K)
-    np.testing.assert_array_equal(read_matrix(folder / "k.npy"), K)
-    np.testing.assert_array_equal(read_matrix(str(folder / "k.npy")), K)
+def test_npy(tmp_path):
+    np.save(tmp_path / "k.npy", K)
+    np.testing.assert_array_equal(read_matrix(tmp_path / "k.npy"), K)
+    np.testing.assert_array_equal(read_matrix(str(tmp_path / "k.npy")), K)
 
 
-def test_npz_with_and_without_key(folder):
-    np.savez(folder / "both.npz", mass=2 * K, stiffness=K)
-    np.savez_compressed(folder / "one.npz", stiffness=K)
-    np.testing.assert_array_equal(read_matrix(folder / "both.npz", "mass"), 2 * K)
-    np.testing.assert_array_equal(read_matrix(folder / "one.npz"), K)
-    np.testing.assert_array_equal(read_matrix(folder / "one.npz", key="stiffness"), K)
+def test_npz_with_and_without_key(tmp_path):
+    np.savez(tmp_path / "both.npz", mass=2 * K, stiffness=K)
+    np.savez_compressed(tmp_path / "one.npz", stiffness=K)
+    np.testing.assert_array_equal(read_matrix(tmp_path / "both.npz", "mass"), 2 * K)
+    np.testing.assert_array_equal(read_matrix(tmp_path / "one.npz"), K)
+    np.testing.assert_array_equal(read_matrix(tmp_path / "one.npz", key="stiffness"), K)
 
 
 @pytest.mark.parametrize("kind", ["csr", "csc", "coo", "dia", "bsr"])
-def test_npz_of_scipy_sparse(folder, kind):
-    scipy.sparse.save_npz(folder / "k.npz", scipy.sparse.coo_array(K).asformat(kind))
-    np.testing.assert_array_equal(read_matrix(folder / "k.npz"), K)
+def test_npz_of_scipy_sparse(tmp_path, kind):
+    scipy.sparse.save_npz(tmp_path / "k.npz", scipy.sparse.coo_array(K).asformat(kind))
+    np.testing.assert_array_equal(read_matrix(tmp_path / "k.npz"), K)
 
 
 @pytest.mark.parametrize("version", ["4", "5"])
 @pytest.mark.parametrize("sparse", [False, True])
-def test_mat(folder, version, sparse):
+def test_mat(tmp_path, version, sparse):
     stiffness = scipy.sparse.csc_array(K) if sparse else K
-    scipy.io.savemat(folder / "k.mat", {"M": 2 * K, "K": stiffness}, format=version)
-    read = read_matrix(folder / "k.mat", "K")
+    scipy.io.savemat(tmp_path / "k.mat", {"M": 2 * K, "K": stiffness}, format=version)
+    read = read_matrix(tmp_path / "k.mat", "K")
     np.testing.assert_array_equal(read, K)
     assert read.dtype == np.float64
     assert read.flags.c_contiguous
 
 
-def test_mat_of_one_variable_needs_no_key(folder):
-    scipy.io.savemat(folder / "k.mat", {"K": K}, do_compression=True)
-    np.testing.assert_array_equal(read_matrix(folder / "k.mat"), K)
+def test_mat_of_one_variable_needs_no_key(tmp_path):
+    scipy.io.savemat(tmp_path / "k.mat", {"K": K}, do_compression=True)
+    np.testing.assert_array_equal(read_matrix(tmp_path / "k.mat"), K)
 
 
 def matlab_73(file, **variables):
@@ -99,10 +90,10 @@ def matlab_73(file, **variables):
     return file
 
 
-def test_mat_73(folder):
+def test_mat_73(tmp_path):
     wide = K[:2]
     file = matlab_73(
-        folder / "k.mat",
+        tmp_path / "k.mat",
         K=K,
         wide=wide,
         sparse=scipy.sparse.csc_array(wide),
@@ -114,14 +105,14 @@ def test_mat_73(folder):
     np.testing.assert_array_equal(read_matrix(file, "none"), np.zeros((2, 3)))
 
 
-def test_mat_73_of_other_programs(folder):
-    with h5py.File(folder / "k.mat", "w", userblock_size=512) as file:
+def test_mat_73_of_other_programs(tmp_path):
+    with h5py.File(tmp_path / "k.mat", "w", userblock_size=512) as file:
         file.create_dataset("K", data=K.T).attrs["MATLAB_class"] = "double"
         file["none"] = np.array([0, 3], np.uint64)
         file["none"].attrs["MATLAB_empty"] = np.uint8(1)
-    np.testing.assert_array_equal(read_matrix(folder / "k.mat", "K"), K)
+    np.testing.assert_array_equal(read_matrix(tmp_path / "k.mat", "K"), K)
     with pytest.raises(ModelError, match="'none' is empty; save the matrix again"):
-        read_matrix(folder / "k.mat", "none")
+        read_matrix(tmp_path / "k.mat", "none")
 
 
 @pytest.mark.parametrize(
@@ -135,8 +126,8 @@ def test_mat_73_of_other_programs(folder):
         (None, r"it holds 'K', 'Z', 'a_struct', 'text'; choose one with key"),
     ],
 )
-def test_mat_73_refuses(folder, key, message):
-    file = matlab_73(folder / "k.mat", K=K, Z=K + 0j, text=np.array([[75]], dtype=np.uint16))
+def test_mat_73_refuses(tmp_path, key, message):
+    file = matlab_73(tmp_path / "k.mat", K=K, Z=K + 0j, text=np.array([[75]], dtype=np.uint16))
     with pytest.raises(ModelError, match=message):
         read_matrix(file, key)
 
@@ -158,10 +149,10 @@ def test_npz_and_mat_keep_every_bit(tmp_path_factory, matrix):
 # what is refused
 
 
-def test_refusals_of_names(folder):
-    np.save(folder / "k.npy", K)
-    write(folder / "k.txt", "1 2\n3 4\n")
-    write(folder / "k", "1 2\n3 4\n")
+def test_refusals_of_names(tmp_path):
+    np.save(tmp_path / "k.npy", K)
+    write(tmp_path / "k.txt", "1 2\n3 4\n")
+    write(tmp_path / "k", "1 2\n3 4\n")
     for name, message in [
         ("nothing.npz", r"nothing\.npz: no such file; check the path$"),
         ("k.txt", r"k\.txt: unknown file ending '\.txt'"),
@@ -170,10 +161,10 @@ def test_refusals_of_names(folder):
         ("k.npy.gz", r"unknown file ending '\.gz'"),
     ]:
         with pytest.raises(ModelError, match=message):
-            read_matrix(folder / name)
-    (folder / "folder.mat").mkdir()
+            read_matrix(tmp_path / name)
+    (tmp_path / "folder.mat").mkdir()
     with pytest.raises(ModelError, match=r"folder\.mat: is a folder; give the name of a file in"):
-        read_matrix(folder / "folder.mat")
+        read_matrix(tmp_path / "folder.mat")
 
 
 @pytest.mark.parametrize("path", [np.nan, None, 3, b"k.npy", "", "k\0.npy"])
@@ -183,32 +174,32 @@ def test_refuses_what_is_no_path(path):
 
 
 @pytest.mark.parametrize("key", [3, b"K", ["K"], np.array("K"), ""])
-def test_refuses_what_is_no_key(folder, key):
-    np.savez(folder / "k.npz", K=K)
+def test_refuses_what_is_no_key(tmp_path, key):
+    np.savez(tmp_path / "k.npz", K=K)
     with pytest.raises(ModelError, match=r"k\.npz: key: .* (not text|empty); give a name"):
-        read_matrix(folder / "k.npz", key)
+        read_matrix(tmp_path / "k.npz", key)
 
 
-def test_causes_are_cut_to_one_short_line(folder, monkeypatch):
+def test_causes_are_cut_to_one_short_line(tmp_path, monkeypatch):
     def fail(*_, **__):
         raise RuntimeError("long\n" * 1000)
 
-    np.save(folder / "k.npy", K)
+    np.save(tmp_path / "k.npy", K)
     monkeypatch.setattr(np, "load", fail)
     with pytest.raises(ModelError) as refusal:
-        read_matrix(folder / "k.npy")
+        read_matrix(tmp_path / "k.npy")
     assert "\n" not in str(refusal.value)
-    assert len(str(refusal.value)) < len(str(folder)) + 150
+    assert len(str(refusal.value)) < len(str(tmp_path)) + 150
 
 
-def test_refusals_of_keys(folder):
-    np.savez(folder / "both.npz", mass=K, stiffness=K)
-    np.savez(folder / "none.npz")
-    np.save(folder / "k.npy", K)
-    scipy.sparse.save_npz(folder / "sparse.npz", scipy.sparse.csr_array(K))
-    scipy.io.savemat(folder / "both.mat", {"mass": K, "stiffness": K})
-    scipy.io.mmwrite(folder / "k.mtx", K)
-    write(folder / "k.rsa", "")
+def test_refusals_of_keys(tmp_path):
+    np.savez(tmp_path / "both.npz", mass=K, stiffness=K)
+    np.savez(tmp_path / "none.npz")
+    np.save(tmp_path / "k.npy", K)
+    scipy.sparse.save_npz(tmp_path / "sparse.npz", scipy.sparse.csr_array(K))
+    scipy.io.savemat(tmp_path / "both.mat", {"mass": K, "stiffness": K})
+    scipy.io.mmwrite(tmp_path / "k.mtx", K)
+    write(tmp_path / "k.rsa", "")
     one = "the file holds one matrix; leave key out"
     for name, key, message in [
         ("both.npz", None, "it holds 'mass', 'stiffness'; choose one with key"),
@@ -224,7 +215,7 @@ def test_refusals_of_keys(folder):
         ("k.rsa", "K", one),
     ]:
         with pytest.raises(ModelError, match=message):
-            read_matrix(folder / name, key)
+            read_matrix(tmp_path / name, key)
 
 
 @pytest.mark.parametrize(
@@ -238,31 +229,31 @@ def test_refusals_of_keys(folder):
         (np.array([[1.0], [-np.inf]]), r"-inf at \(1, 0\)"),
     ],
 )
-def test_refusals_of_values(folder, value, message):
-    np.save(folder / "k.npy", value)
-    np.savez(folder / "k.npz", K=value)
+def test_refusals_of_values(tmp_path, value, message):
+    np.save(tmp_path / "k.npy", value)
+    np.savez(tmp_path / "k.npz", K=value)
     with pytest.raises(ModelError, match=rf"k\.npy: {message}") as refusal:
-        read_matrix(folder / "k.npy")
+        read_matrix(tmp_path / "k.npy")
     assert "\n" not in str(refusal.value)
     with pytest.raises(ModelError, match=r"k\.npz: 'K': "):
-        read_matrix(folder / "k.npz", "K")
+        read_matrix(tmp_path / "k.npz", "K")
 
 
-def test_refuses_pickles_unopened(folder):
+def test_refuses_pickles_unopened(tmp_path):
     class Trap:
         def __reduce__(self):
             return (builtins.exit, (1,))
 
-    np.save(folder / "k.npy", np.array([[Trap()]], dtype=object), allow_pickle=True)
-    np.savez(folder / "k.npz", K=np.array([[Trap()]], dtype=object))
+    np.save(tmp_path / "k.npy", np.array([[Trap()]], dtype=object), allow_pickle=True)
+    np.savez(tmp_path / "k.npz", K=np.array([[Trap()]], dtype=object))
     for name in ("k.npy", "k.npz"):
         with pytest.raises(ModelError, match=r"cannot be read as .*allow_pickle=False"):
-            read_matrix(folder / name)
+            read_matrix(tmp_path / name)
 
 
-def test_refuses_mat_variables_that_are_no_matrix(folder):
+def test_refuses_mat_variables_that_are_no_matrix(tmp_path):
     variables = {"s": {"a": 1.0}, "c": np.array([["a", 1]], dtype=object), "t": "text", "z": K + 1j}
-    scipy.io.savemat(folder / "k.mat", variables)
+    scipy.io.savemat(tmp_path / "k.mat", variables)
     for key, message in [
         ("s", "'s' is a struct; save the matrix by itself"),
         ("c", "'c' is a cell"),
@@ -270,13 +261,13 @@ def test_refuses_mat_variables_that_are_no_matrix(folder):
         ("z", "'z': complex entries"),
     ]:
         with pytest.raises(ModelError, match=message):
-            read_matrix(folder / "k.mat", key)
+            read_matrix(tmp_path / "k.mat", key)
 
 
-def test_refuses_sparse_matrices_too_large(folder):
-    scipy.sparse.save_npz(folder / "k.npz", scipy.sparse.eye_array(5001).tocsr())
+def test_refuses_sparse_matrices_too_large(tmp_path):
+    scipy.sparse.save_npz(tmp_path / "k.npz", scipy.sparse.eye_array(5001).tocsr())
     with pytest.raises(ModelError, match=r"5001 rows are too many .*reduce the model first"):
-        read_matrix(folder / "k.npz")
+        read_matrix(tmp_path / "k.npz")
 
 
 @pytest.fixture(scope="module")
@@ -309,11 +300,11 @@ NAMES = [
 
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("share", [0.0, 0.1, 0.3, 0.5, 0.6])
-def test_truncated_files_are_refused(sound, folder, name, share):
+def test_truncated_files_are_refused(sound, tmp_path, name, share):
     content = (sound / name).read_bytes()
-    (folder / name).write_bytes(content[: int(share * len(content))])
+    (tmp_path / name).write_bytes(content[: int(share * len(content))])
     with pytest.raises(ModelError) as refusal:
-        read_matrix(folder / name, "K" if name.endswith("73.mat") else None)
+        read_matrix(tmp_path / name, "K" if name.endswith("73.mat") else None)
     assert "\n" not in str(refusal.value)
 
 

@@ -8,6 +8,7 @@ import pytest
 import scipy.io
 import scipy.sparse
 
+from input_files import write
 from stickslip.errors import ModelError
 from stickslip.io import read_matrix
 
@@ -16,40 +17,30 @@ MTX = "%%MatrixMarket matrix {}\n"
 COORDINATE = MTX.format("coordinate real general")
 
 
-@pytest.fixture
-def folder(tmp_path):
-    return tmp_path
-
-
-def write(file, text):
-    file.write_text(text)
-    return file
-
-
 @pytest.mark.parametrize("name", ["k.mtx", "k.mtx.gz", "K.MTX"])
 @pytest.mark.parametrize("symmetry", ["general", "symmetric"])
 @pytest.mark.parametrize("sparse", [False, True])
-def test_matrix_market(folder, name, symmetry, sparse):
+def test_matrix_market(tmp_path, name, symmetry, sparse):
     text = io.BytesIO()
     matrix = scipy.sparse.coo_array(K) if sparse else K
     scipy.io.mmwrite(text, matrix, symmetry=symmetry, precision=17)
     content = text.getvalue()
-    (folder / name).write_bytes(gzip.compress(content) if name.endswith("gz") else content)
-    np.testing.assert_array_equal(read_matrix(folder / name), K)
+    (tmp_path / name).write_bytes(gzip.compress(content) if name.endswith("gz") else content)
+    np.testing.assert_array_equal(read_matrix(tmp_path / name), K)
 
 
-def test_matrix_market_as_others_write_it(folder):
+def test_matrix_market_as_others_write_it(tmp_path):
     text = "%%MATRIXMARKET MATRIX Coordinate Integer Skew-Symmetric\r\n% by hand\r\n%\r\n\r\n"
     text += " 3  3 2 \r\n2 1 5\r\n% more\r\n3 2 -1.5D+02"
     expected = [[0, -5, 0], [5, 0, 150], [0, -150, 0]]
-    np.testing.assert_array_equal(read_matrix(write(folder / "g.mtx", text)), expected)
+    np.testing.assert_array_equal(read_matrix(write(tmp_path / "g.mtx", text)), expected)
     dense = MTX.format("array real skew-symmetric") + "3 3\n5\n0\n-150\n"
-    np.testing.assert_array_equal(read_matrix(write(folder / "g.mtx", dense)), expected)
+    np.testing.assert_array_equal(read_matrix(write(tmp_path / "g.mtx", dense)), expected)
 
 
-def test_matrix_market_without_entries(folder):
+def test_matrix_market_without_entries(tmp_path):
     text = COORDINATE + "2 3 0\n"
-    np.testing.assert_array_equal(read_matrix(write(folder / "z.mtx", text)), np.zeros((2, 3)))
+    np.testing.assert_array_equal(read_matrix(write(tmp_path / "z.mtx", text)), np.zeros((2, 3)))
 
 
 @pytest.mark.parametrize(
@@ -89,7 +80,7 @@ def test_matrix_market_without_entries(folder):
         ),
     ],
 )
-def test_refuses_matrix_market(folder, text, message):
+def test_refuses_matrix_market(tmp_path, text, message):
     with pytest.raises(ModelError, match=message) as refusal:
-        read_matrix(write(folder / "k.mtx", text))
+        read_matrix(write(tmp_path / "k.mtx", text))
     assert "\n" not in str(refusal.value)
