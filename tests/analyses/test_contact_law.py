@@ -32,16 +32,11 @@ class Slider(ss.ContactLaw):
         return force, force, ss.Tangents(sticks, -slope, slope, [[1.0]], [[0.0]])
 
 
-class Plane(ss.ContactLaw):
+class Plane(Slider):
     """Constant load in two directions, by radial return: the slip is that of one straight step."""
 
     directions = state_size = 2
-    odd = monotone = True
     factor = 1.0
-
-    def __init__(self, *ends, k, limit, **options):
-        super().__init__(*ends, **options)
-        self.k, self.limit = k, limit
 
     def stiffness(self):
         return self.k * np.eye(2)
@@ -148,17 +143,10 @@ def test_a_sector_of_a_disk():
     np.testing.assert_allclose(*(one.coefficients("3.a") for one in sectors), atol=1e-12)
 
 
-class Dahl(ss.ContactLaw):
+class Dahl(Slider):
     """Friction that yields gradually: f' = k u' (1 - sgn(u') f / F)."""
 
-    odd = True
-
-    def __init__(self, *ends, k, limit, **options):
-        super().__init__(*ends, **options)
-        self.k, self.limit = k, limit
-
-    def stiffness(self):
-        return [[self.k]]
+    monotone = False
 
     def step(self, before, after, state):
         du = after - before

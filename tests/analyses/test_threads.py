@@ -14,7 +14,7 @@ SWEEP = """
 import sys
 import numpy as np
 import stickslip as ss
-from stickslip.reference import beam_ring, snecma_beam
+from stickslip.reference import snecma_beam
 
 
 # Forty masses in a row, each with a Jenkins element to the ground.
@@ -42,28 +42,19 @@ def swept(threads: int, sweep: str) -> str:
 
 
 @pytest.mark.slow
-def test_exact_orbits_of_a_sweep_in_pieces() -> None:
-    sweep = "ss.exact_response(snecma_beam(), np.linspace(20, 350, 40))"
+@pytest.mark.parametrize(
+    ("sweep", "points", "threads"),
+    [
+        ("ss.exact_response(snecma_beam(), np.linspace(20, 350, 40))", 40, [3]),
+        ("ss.forced_response(snecma_beam(), np.linspace(180, 240, 400), harmonics=127)", 400, [3]),
+        ("ss.forced_response(chain(), (24.0, 32.0), harmonics=7)", 2 * 60, [2, 4]),
+    ],
+    ids=["orbits", "balances", "range"],
+)
+def test_pieces_of_a_sweep(sweep: str, points: int, threads: list[int]) -> None:
     alone = swept(1, sweep)
-    assert len(alone) > 40 * 16
-    assert swept(3, sweep) == alone
-
-
-@pytest.mark.slow
-def test_balances_of_a_long_sweep_in_pieces() -> None:
-    sweep = "ss.forced_response(snecma_beam(), np.linspace(180, 240, 400), harmonics=127)"
-    alone = swept(1, sweep)
-    assert len(alone) > 400 * 16
-    assert swept(3, sweep) == alone
-
-
-@pytest.mark.slow
-def test_a_range_in_pieces() -> None:
-    sweep = "ss.forced_response(chain(), (24.0, 32.0), harmonics=7)"
-    alone = swept(1, sweep)
-    assert len(alone) > 2 * 60 * 16
-    assert swept(2, sweep) == alone
-    assert swept(4, sweep) == alone
+    assert len(alone) > points * 16
+    assert all(swept(several, sweep) == alone for several in threads)
 
 
 def test_points_of_pieces_are_those_of_their_frequencies() -> None:
