@@ -8,11 +8,13 @@ from stickslip.analyses.assumptions import orbit_assumptions
 from stickslip.analyses.doubts import is_unique
 from stickslip.analyses.forced_response import forced_response
 from stickslip.analyses.free_flight import with_free_flight
+from stickslip.analyses.mass_scaling import mass_scaled
 from stickslip.analyses.run import Progress, Run, refusals, share
 from stickslip.disk.wave_ring import moving
 from stickslip.errors import Interrupted, ModelError
 from stickslip.memory import require_memory
 from stickslip.model import Model
+from stickslip.results.diagnostic import Diagnostic
 from stickslip.results.exact_response import ExactResponse, OrbitArrays
 from stickslip.results.fields import Float
 from stickslip.settings.entries import Span
@@ -79,14 +81,23 @@ def exact_response(
         if isinstance(grid, tuple):
             grid = _frequencies(model, grid, kept, dofs, share(run, 0.0, _CHOOSING))
             part = share(run, _CHOOSING, 1.0)
-        result = orbits_at(model, grid, dofs, kept, part)
+        slowed, scaling = mass_scaled(model, grid, kept.mass_scaling)
+        result = orbits_at(slowed, grid, dofs, kept, part, *scaling)
         return run.ended(with_free_flight(result), f"{result.omega.size} of {grid.size} points")
 
 
 def orbits_at(
-    model: Model, grid: Float, dofs: tuple[str, ...], settings: ExactSettings, progress: Progress
+    model: Model,
+    grid: Float,
+    dofs: tuple[str, ...],
+    settings: ExactSettings,
+    progress: Progress,
+    *assumed: Diagnostic,
 ) -> ExactResponse:
-    """Return the exact orbits that are found before an interruption; of a wave, of sector 0."""
+    """Return the exact orbits that are found before an interruption; of a wave, of sector 0.
+
+    What was `assumed` of the model is said beside what the orbits take for granted.
+    """
     problem, rotation = moving(model, half_wave=model.problem.half_wave(settings.residual))
     sectors = 1 if rotation is None else rotation.sectors
     points = sectors * points_of(model)
@@ -113,7 +124,10 @@ def orbits_at(
         settings=settings,
         dofs=dofs,
         arrays=arrays,
-        diagnostics=orbit_assumptions(model, settings, dofs, arrays, solution, grid.size),
+        diagnostics=(
+            *assumed,
+            *orbit_assumptions(model, settings, dofs, arrays, solution, grid.size),
+        ),
     )
 
 

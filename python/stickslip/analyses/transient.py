@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from stickslip import _core
 from stickslip.analyses.arguments import (
     columns_of,
@@ -13,6 +15,7 @@ from stickslip.analyses.arguments import (
     state_of,
 )
 from stickslip.analyses.assumptions import transient_assumptions, turn_per_step
+from stickslip.analyses.mass_scaling import mass_scaled
 from stickslip.analyses.run import Progress, Run, refusals
 from stickslip.errors import ModelError
 from stickslip.memory import require_numbers
@@ -53,6 +56,7 @@ def transient(model: Model, settings: TransientKeys, *, progress: Progress = Non
     require_time(model)
     dofs = observed_dofs(settings, model)
     kept = TransientSettings.of(**settings.part(TransientSettings))
+    model, scaling = mass_scaled(model, np.array([kept.omega]), kept.mass_scaling)
     _require_stable(model, kept)
     start = settings.start
     first = None if start is None else state_of(model, start, "start").vector
@@ -66,7 +70,10 @@ def transient(model: Model, settings: TransientKeys, *, progress: Progress = Non
             settings=kept,
             dofs=dofs,
             arrays=TransientArrays.of(history),
-            diagnostics=transient_assumptions(model, kept, dofs, start, history),
+            diagnostics=(
+                *scaling,
+                *transient_assumptions(model, kept, dofs, start, history),
+            ),
         )
         return run.ended(result, f"{result.periods} of {kept.periods} periods")
 

@@ -348,7 +348,8 @@ def refusal(error: ValueError, model: Model) -> ModelError:
     return ModelError(
         f"mass of dof {brief(model.structure.dofs[dof])}: with {mass:.3g} kg it moves "
         f"{ratio:.2g} times faster than omega = {omega:.6g} rad/s, too fast to follow in time; "
-        "condense this dof statically, or balance harmonics with forced_response"
+        "condense this dof statically, give mass_scaling=1e-5 to exact_response or transient, or "
+        "balance harmonics with forced_response"
     )
 
 

@@ -29,11 +29,11 @@ class Severity(StrEnum):
 _CODES = {
     Severity.NOTE: """
         harmonics samples method no-error-estimate half-period half-wave modal-base direct-solution
-        exact-orbits frequencies observed-dofs tolerances-missed static-traction start-of-march
-        start time-steps kept-periods criterion modes peak-range varied-together rigid-limit
-        coarse-search patterns deviations onset forces-ignored stability-undecided multipliers
-        unbounded-branch branch-unknown folds unstable intervals noise-estimated mode-at-rest turns
-        samples-drawn independent bounds wave-stability waves-unheld text
+        exact-orbits mass-scaling frequencies observed-dofs tolerances-missed static-traction
+        start-of-march start time-steps kept-periods criterion modes peak-range varied-together
+        rigid-limit coarse-search patterns deviations onset forces-ignored stability-undecided
+        multipliers unbounded-branch branch-unknown folds unstable intervals noise-estimated
+        mode-at-rest turns samples-drawn independent bounds wave-stability waves-unheld text
     """,
     Severity.CAUTION: """
         truncation harmonics-limit law-not-monotone undamped-motion negative-damping coarse-steps

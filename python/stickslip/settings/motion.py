@@ -37,7 +37,19 @@ _Start = Annotated[
 ]
 
 
-class TransientSettings(Settings):
+class MassScalingKey(Settings):
+    """Whether fast modes are slowed."""
+
+    mass_scaling: Annotated[float, Within(1e-10, 0.1), percent] | None = Field(
+        default=None,
+        description="Slow modes much faster than the forces, by mass that moves with them alone, "
+        "as far as contacts move differently by an estimate of this, relative. The motion takes "
+        "longer steps then. Default: all modes as they are.",
+        examples=[1e-5],
+    )
+
+
+class TransientSettings(MassScalingKey):
     """How a motion is followed."""
 
     omega: Omega = Field(description="Angular frequency of the forces [rad/s].")

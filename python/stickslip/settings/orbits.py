@@ -11,10 +11,11 @@ from stickslip.checks import brief, members, whole_number
 from stickslip.errors import EntryError, ModelError
 from stickslip.settings.balance import BoundsKey, CurveKeys, PointSettings, SteadySettings
 from stickslip.settings.entries import ONE_OF, Flag, Index, Span, Tolerance, Whole
+from stickslip.settings.motion import MassScalingKey
 from stickslip.settings.settings import Settings
 
 
-class OrbitSettings(SteadySettings):
+class OrbitSettings(SteadySettings, MassScalingKey):
     """How exact orbits are computed."""
 
     harmonics: Annotated[int, Whole(1, 255)] = Field(

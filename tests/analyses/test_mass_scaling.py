@@ -1,0 +1,98 @@
+"""Fast modes slowed by mass that moves with them alone."""
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+
+TOLERANCE = 1e-4
+
+
+def chain(seed: int) -> tuple[ss.Model, float]:
+    """Return a chain of masses that carry light ones on stiff springs; a light one rubs."""
+    rng = np.random.default_rng(seed)
+    size = int(rng.integers(2, 7))
+    springs, stems = 10.0 ** rng.uniform(4.0, 5.0, size), 10.0 ** rng.uniform(5.5, 6.5, size)
+    stiffness = np.diag(np.concatenate([springs + np.append(springs[1:], 0.0) + stems, stems]))
+    stiffness -= np.diag(np.concatenate([springs[1:], np.zeros(size)]), 1)
+    stiffness -= np.diag(np.concatenate([springs[1:], np.zeros(size)]), -1)
+    stiffness -= np.diag(stems, size) + np.diag(stems, -size)
+    mass = 10.0 ** np.concatenate([rng.uniform(0.0, 1.0, size), rng.uniform(-4.0, -3.0, size)])
+    structure = ss.Structure(np.diag(mass), stiffness, ss.ModalDamping(0.01))
+    light = int(rng.integers(size))
+    stuck = 0.01 * stems[light]
+    contact = ss.Jenkins(str(size + light), stiffness=stuck, slip_force=1e-4 * stuck)
+    model = ss.Model(structure, [contact], [ss.Force(str(light), 30.0)])
+    return model, 0.8 * ss.natural_frequencies(model)[0]
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_the_motion_changes_by_no_more_than_the_estimate_in_fewer_steps(seed):
+    model, omega = chain(seed)
+    whole = ss.exact_response(model, [omega])
+    slowed = ss.exact_response(model, [omega], mass_scaling=TOLERANCE)
+    said = slowed.diagnostics[0]
+    assert said.code == "mass-scaling"
+    assert said.data["slowed"] < said.data["fastest"]
+    assert said.data["change"] <= TOLERANCE * (1.0 + 1e-9)
+    assert whole.converged.all()
+    assert slowed.converged.all()
+    assert slowed.counters["evaluations"] < whole.counters["evaluations"]
+    dof = model.forces[0].dof
+    changed = slowed.amplitude(dof) / whole.amplitude(dof) - 1.0
+    assert 0.0 < np.abs(changed).max() < said.data["change"]
+
+
+def test_only_the_fast_modes_become_slower_and_the_flexibility_remains():
+    model, omega = chain(1)
+    slowed = ss.exact_response(model, [omega], mass_scaling=TOLERANCE)
+    said = slowed.diagnostics[0].data
+    free = model.replaced(contacts=())
+    before = ss.natural_frequencies(free)
+    after = ss.natural_frequencies(slowed.model.replaced(contacts=()))
+    kept = before.size - said["modes"]
+    assert before[-1] == pytest.approx(said["fastest"], rel=1e-9)
+    np.testing.assert_allclose(after[:kept], before[:kept], rtol=1e-9)
+    np.testing.assert_allclose(after[kept:], said["slowed"], rtol=1e-9)
+    assert slowed.model.structure.stiffness.tobytes() == model.structure.stiffness.tobytes()
+    assert slowed.model.structure.damping.tobytes() == model.structure.damping.tobytes()
+
+
+def test_modes_too_fast_to_follow_are_followed():
+    stiffness = np.array([[2e4, -1e4, 0.0], [-1e4, 1e8, -9e7], [0.0, -9e7, 9e7]])
+    structure = ss.Structure(np.diag([1.0, 1e-3, 1e-8]), stiffness, ss.ModalDamping(0.01))
+    model = ss.Model(
+        structure, [ss.Jenkins("0", stiffness=1e4, slip_force=5.0)], [ss.Force("0", 30.0)]
+    )
+    with pytest.raises(ss.ModelError, match=r"mass of dof '2'.*mass_scaling=1e-5"):
+        ss.exact_response(model, [80.0])
+    slowed = ss.exact_response(model, [80.0], mass_scaling=TOLERANCE)
+    balance = ss.forced_response(model, [80.0], 101)
+    assert slowed.amplitude("0") == pytest.approx(balance.amplitude("0"), rel=1e-4)
+
+
+def test_transients_take_longer_steps_too():
+    model, omega = chain(3)
+    dof = model.forces[0].dof
+    whole = ss.transient(model, omega, periods=300, keep=1)
+    slowed = ss.transient(model, omega, periods=300, keep=1, mass_scaling=TOLERANCE)
+    assert slowed.diagnostics[0].code == "mass-scaling"
+    assert slowed.amplitudes(dof)[-1] == pytest.approx(whole.amplitudes(dof)[-1], rel=TOLERANCE)
+
+
+def test_what_has_no_fast_modes_stays_as_it_is():
+    beam = ss.reference.snecma_beam(25.0)
+    whole = ss.exact_response(beam, [170.0])
+    same = ss.exact_response(beam, [170.0], mass_scaling=1e-8)
+    assert same.diagnostics[0].data == {"tolerance": 1e-8}
+    assert same.amplitude("tip") == whole.amplitude("tip")
+
+
+def test_rings_and_dofs_without_mass_are_refused():
+    with pytest.raises(ss.ModelError, match=r"mass_scaling: .* has sectors"):
+        ss.exact_response(ss.reference.beam_ring(), [170.0], mass_scaling=TOLERANCE)
+    structure = ss.Structure(np.diag([1.0, 0.0]), [[2e4, -1e4], [-1e4, 1e4]])
+    contact = ss.Jenkins("1", stiffness=1e4, slip_force=5.0)
+    model = ss.Model(structure, [contact], [ss.Force("0", 1.0)])
+    with pytest.raises(ss.ModelError, match=r"mass_scaling: dof '1' has no mass"):
+        ss.exact_response(model, [80.0], mass_scaling=TOLERANCE)
