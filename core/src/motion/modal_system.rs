@@ -72,7 +72,12 @@ impl ModalSystem {
         }
         let structure = model.structure();
         let modes = modes(structure.mass(), structure.stiffness())?;
-        let damping = modes.damping(structure.damping());
+        let (modes, damping) = if structure.is_proportional() {
+            modes.damped_by_law(structure.damping())
+        } else {
+            let damping = modes.damping(structure.damping());
+            (modes, damping)
+        };
         let size = modes.omega_squared.len();
         let rows = &*model.ports().rows * &modes.shapes;
         let contacts = bodies

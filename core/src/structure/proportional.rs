@@ -200,6 +200,18 @@ impl RealModes {
         let modal = complex(self.project(matrix).as_ref());
         ModalDamping::new(modal, &self.to_hermitian(), |i, j| c64::new(matrix[(i, j)], 0.0))
     }
+
+    /// These modes with a damping matrix that a law made: turned as far as rounding leaves them open,
+    /// and not coupled, whatever rounding says.
+    pub(crate) fn damped_by_law(mut self, matrix: MatRef<'_, f64>) -> (Self, ModalDamping) {
+        let mut damping = self.damping(matrix);
+        if let Some((modes, each)) = damping.clone().separated(self.to_hermitian(), true) {
+            self.shapes = Mat::from_fn(each.len(), each.len(), |i, j| modes.shapes[(i, j)].re);
+            let own = |i, j| if i == j { c64::new(each[i], 0.0) } else { c64::new(0.0, 0.0) };
+            damping.matrix = Mat::from_fn(each.len(), each.len(), own);
+        }
+        (self, damping)
+    }
 }
 
 impl HermitianModes {

@@ -19,6 +19,8 @@ _CHANGES = 4
 """Changes of stick and slip of a contact in a period: what they set ringing may add up."""
 _SLOWEST = 32.0
 """Lowest frequency of slowed modes, over those of the forces: higher harmonics are small."""
+_SPREAD = 1.25
+"""Highest frequency of slowed modes over their lowest: equal ones would lose their shapes."""
 _NEAR = 10.0
 """Stuck modes are looked at up to this many times the frequencies of the forces."""
 
@@ -75,14 +77,15 @@ def mass_scaled(
     )
     least = np.maximum(least, _SLOWEST * frequencies.max(initial=0.0))
     # What is the fastest motion once the fastest, the two fastest, ... modes are slowed.
-    left = np.maximum(least, np.append(modes[-2::-1], 0.0))
+    left = np.maximum(_SPREAD * least, np.append(modes[-2::-1], 0.0))
     slowed, fastest = float(left.min()), float(modes[-1])
     fast = modes > slowed
     count = int(fast.sum())
     if not count:
         return model, (told("mass-scaling/none", tolerance=tolerance),)
-    change = tolerance * float(least[count - 1]) / slowed
-    scaled = _slowed(structure, shapes[:, fast], modes[fast], slowed)
+    spread = np.linspace(1.0 / _SPREAD, 1.0, count)
+    change = tolerance * float(least[count - 1]) * _SPREAD / slowed
+    scaled = _slowed(structure, shapes[:, fast], modes[fast], slowed * spread)
     said = told("mass-scaling", modes=count, fastest=fastest, slowed=slowed, change=change)
     return model.with_structure(scaled), (said,)
 
@@ -128,10 +131,10 @@ def _inertia(model: Model, shapes: Matrix, modes: Float, frequencies: Float) -> 
     return np.fmax(changes, shifts)
 
 
-def _slowed(structure: Structure, shapes: Matrix, modes: Float, frequency: float) -> Structure:
-    """Return the structure with these modes slowed to one frequency."""
+def _slowed(structure: Structure, shapes: Matrix, modes: Float, slowed: Float) -> Structure:
+    """Return the structure with these modes slowed to other frequencies."""
     momenta = structure.mass @ shapes
-    added = (momenta * ((modes / frequency) ** 2 - 1.0)) @ momenta.T
+    added = (momenta * ((modes / slowed) ** 2 - 1.0)) @ momenta.T
     return Structure.of_law(
         structure.mass + added,
         structure.stiffness,
