@@ -159,3 +159,8 @@ def test_a_node_that_a_set_names_twice_is_one(tmp_path):
     sets = read(tmp_path, SOUND).node_sets
     twice = read(tmp_path, SOUND.replace("SET1,1,", "SET1,1,16,15,")).node_sets
     assert sorted(twice["SET1 1"]) == sorted(sets["SET1 1"])
+
+
+def test_fields_between_blanks_are_refused(tmp_path):
+    with pytest.raises(ss.ModelError, match="fields of CTETRA are separated by blanks"):
+        read(tmp_path, SOUND.replace("SET1,1,", "CTETRA 99 1 1 2 3 4\nSET1,1,"))

@@ -149,3 +149,16 @@ def test_solids_whose_faces_are_not_known_are_refused():
     mesh = ss.Mesh(np.random.default_rng(2).random((27, 3)), [("hexahedron27", [[*range(27)]])])
     with pytest.raises(ss.ModelError, match="faces of hexahedron27 are not known"):
         mesh.surface(np.ones(27, dtype=bool))
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "latin-1"])
+def test_names_are_read_in_either_encoding(tmp_path, encoding):
+    path = tmp_path / "seat.inp"
+    path.write_bytes(DECK.replace("FEET", "FÜSSE").encode(encoding))
+    assert "FÜSSE" in ss.read_mesh(path).node_sets
+
+
+def test_surfaces_made_of_others_are_refused_by_name(tmp_path):
+    text = DECK.replace("*STEP", "*SURFACE, NAME=BOTH, COMBINE=UNION\nSEAT, SEAT\n*STEP")
+    with pytest.raises(ss.ModelError, match="surface BOTH: COMBINE is not read"):
+        ss.read_mesh(deck(tmp_path, text))

@@ -272,3 +272,24 @@ def test_a_set_said_in_other_words_is_left_out(tmp_path, words):
     path = tmp_path / "joint.bdf"
     path.write_text(bulk_data(False).replace("SET1,1,15,THRU,18", f"SET1,1,15\nSET1,1,{words}"))
     assert sorted(ss.read_mesh(path).node_sets) == ["SET1 2"]
+
+
+@pytest.mark.parametrize(
+    ("parts", "says"),
+    [
+        ({"cells": [("hexahedron", [[0, 1, 2, 3]])]}, "4 nodes for a hexahedron; give 8 of each"),
+        ({"cells": [("quad", [[0, 1, 2]])]}, "3 nodes for a quad; give 4 of each"),
+        ({"cells": [("triangle6", [[0, 1, 2]])]}, "3 nodes for a triangle6; give 6 of each"),
+        ({"surfaces": {"top": [[[0, 1]]]}}, r"surface top: faces of shape \(1, 2\)"),
+        ({"surfaces": {"top": [[0, 1, 2]]}}, r"surface top: faces of shape \(3,\)"),
+    ],
+)
+def test_elements_and_faces_have_as_many_nodes_as_their_kind(parts, says):
+    corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]]
+    with pytest.raises(ss.ModelError, match=says):
+        ss.Mesh(corners, **parts)
+
+
+def test_a_field_of_words_is_refused():
+    with pytest.raises(ss.ModelError, match="are no numbers"):
+        ss.Mesh([[0.0, 0.0, 0.0]]).field(["1.1"], ["a"])

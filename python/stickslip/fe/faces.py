@@ -6,10 +6,11 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from stickslip.checks import Matrix, as_list, brief, whole_array
 from stickslip.errors import ModelError
-from stickslip.fe.surface import Places, area_vectors, outward
+from stickslip.fe.surface import CORNERS, Places, area_vectors, outward
 
 
 def corner_keys(faces: Places) -> Places:
@@ -135,13 +136,36 @@ _SHELLS = ("triangle", "quad")
 _SOLID = re.compile("(VTK_LAGRANGE_)?(tetra|pyramid|wedge|hexahedron)", re.I)
 
 
+def node_count(kind: str) -> int:
+    """Return the number of nodes of an element: of its corners, and of its edges if numbered so."""
+    corners = 1 + max(map(max, _FACES[KINDS[kind]]))
+    return corners if kind in _FACES else corners + len(_EDGES[KINDS[kind]])
+
+
 def tables(given: Iterable[object]) -> Iterator[tuple[str, Places]]:
     """Give the elements of each kind, a table of the positions of their nodes."""
     for pair in given:
         parts = as_list(pair)
         if parts is None or len(parts) != 2:
             raise ModelError(f"mesh: cells: {brief(pair)} is no pair; give (kind, nodes)")
-        yield str(parts[0]), whole_array(parts[1], f"mesh: {parts[0]}", "positions of nodes")
+        kind, of = str(parts[0]), whole_array(parts[1], f"mesh: {parts[0]}", "positions of nodes")
+        if kind in KINDS and of.ndim == 2 and of.size and of.shape[1] != node_count(kind):
+            raise ModelError(
+                f"mesh: {of.shape[1]} nodes for a {kind}; give {node_count(kind)} of each"
+            )
+        yield kind, of
+
+
+def named_faces(name: str, given: Iterable[ArrayLike]) -> Iterator[Places]:
+    """Give the faces of a surface, arrays by their number of nodes."""
+    for one in given:
+        faces = whole_array(one, f"mesh: surface {name}", "positions of the nodes of each face")
+        if faces.size and (faces.ndim != 2 or faces.shape[1] not in CORNERS):
+            raise ModelError(
+                f"mesh: surface {name}: faces of shape {faces.shape}; give arrays of (m, k), with "
+                "k = 3, 4, 6 or 8 nodes of each face"
+            )
+        yield faces
 
 
 def outside(cells: Sequence[tuple[str, Places]], points: Matrix) -> list[Places]:

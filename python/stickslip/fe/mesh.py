@@ -22,7 +22,7 @@ from stickslip.checks import (
     whole_number,
 )
 from stickslip.errors import ModelError
-from stickslip.fe.faces import distinct, outside, tables
+from stickslip.fe.faces import distinct, named_faces, outside, tables
 from stickslip.fe.reduced_modes import natural_modes
 from stickslip.fe.reduction import Reduction
 from stickslip.fe.solid import Solid
@@ -67,8 +67,8 @@ class Mesh:
     Raises
     ------
     ModelError
-        If a coordinate is not finite, an element has a node that is not there, or a number is
-        given twice.
+        If a coordinate is not finite, an element has a node that is not there, an element or a
+        face has another number of nodes than its kind, or a number is given twice.
     """
 
     nodes: NDArray[np.float64]
@@ -111,13 +111,7 @@ class Mesh:
             name: whole_array(own, f"mesh: node set {name}", "positions of nodes")
             for name, own in (node_sets or {}).items()
         }
-        faces = {
-            name: tuple(
-                whole_array(one, f"mesh: surface {name}", "positions of the nodes of each face")
-                for one in own
-            )
-            for name, own in (surfaces or {}).items()
-        }
+        faces = {name: tuple(named_faces(name, own)) for name, own in (surfaces or {}).items()}
         turned = whole_array(rotated, "mesh: rotated", "positions of nodes")
         parts = [*sets.items(), *((n, f) for n, many in faces.items() for f in many)]
         for name, own in [*parts, ("rotated", turned)]:
@@ -236,6 +230,8 @@ class Mesh:
         moved, names = np.asarray(values), list(dofs)
         if moved.shape != (len(names),):
             raise ModelError(f"field: shape {moved.shape} for {len(names)} dofs; give one of each")
+        if moved.dtype.kind not in "biufc":
+            raise ModelError(f"field: {brief(values)} are no numbers; give displacements")
         nodes, ways = self._places(names)
         self._require_global(nodes, "field")
         made = np.zeros((len(self.nodes), 3), moved.dtype)

@@ -6,7 +6,7 @@ from collections.abc import Container, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from stickslip.io.source import at_line, plain, require_included
+from stickslip.io.source import at_line, of_deck, require_included
 
 _HEAD, _TAIL = 8, 8
 """Columns of the name of a card, and of the mark of its continuation."""
@@ -33,7 +33,7 @@ def bulk_cards(file: Path, names: Iterable[str], depth: int = 0) -> Iterator[Car
     require_included(file)
     wanted = (*names, "INCLUDE", "ENDDATA")
     own = file.name if depth else ""
-    for card in cards(plain(file.read_bytes(), "latin-1").split("\n"), wanted):
+    for card in cards(of_deck(file.read_bytes()).split("\n"), wanted):
         if card.name == "ENDDATA":
             return
         if card.name == "INCLUDE":
@@ -62,6 +62,12 @@ def cards(lines: Iterable[str], names: Container[str]) -> Iterator[Card]:
                 yield found
             name = head.rstrip("*").rstrip().upper()
             included = text.strip().upper().startswith("INCLUDE")
+            if "," not in text and not included and name not in names:
+                first, *more = name.split()
+                if more and first.rstrip("*") in names:
+                    raise ValueError(
+                        f"line {number}: fields of {first} are separated by blanks; use commas"
+                    )
             name = "INCLUDE" if included else name
             found = Card(number, name, []) if name in names else None
             if included and found:

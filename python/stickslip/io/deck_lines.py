@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TypeAlias
 
 from stickslip.io.numbers import real_field, whole_field
-from stickslip.io.source import at_line, read_text, require_included
+from stickslip.io.source import at_line, of_deck, require_included
 
 _DEEPEST = 8
 """Files that name each other with *INCLUDE."""
@@ -107,7 +107,7 @@ def _lines(file: Path, depth: int) -> Iterator[_Line]:
     if depth > _DEEPEST:
         raise ValueError("*INCLUDE: files include each other")
     require_included(file)
-    for number, line in enumerate(read_text(file, "latin-1").split("\n"), 1):
+    for number, line in enumerate(of_deck(file.read_bytes()).split("\n"), 1):
         text = line.strip()
         if not text or text.startswith("**"):
             continue

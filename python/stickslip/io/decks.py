@@ -140,6 +140,8 @@ class _Deck:
 
     def _surface(self, options: dict[str, str], rows: list[Row]) -> None:
         name = options["NAME"]
+        if "COMBINE" in options:
+            raise ValueError(f"surface {name}: COMBINE is not read; list its elements and faces")
         if options.get("TYPE", "ELEMENT") == "NODE":
             for row in rows:
                 # The second of two words is an area in Abaqus.

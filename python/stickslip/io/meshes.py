@@ -18,7 +18,7 @@ from stickslip.io.ansys_mesh import mesh_of_archive
 from stickslip.io.archive import is_archive, parse_archive
 from stickslip.io.bulk_mesh import read_bulk_mesh
 from stickslip.io.decks import read_deck
-from stickslip.io.source import plain, readable
+from stickslip.io.source import of_deck, readable
 from stickslip.model.matrix_units import MatrixUnits, Units
 
 _BULK = re.compile(r"^(?:BEGIN +BULK|GRID[* ,\t])", re.I | re.M)
@@ -89,7 +89,7 @@ def _own(file: Path) -> Mesh | None:
     if ending not in (".inp", ".cdb", ".dat"):
         return None
     with readable(file, "archive of ANSYS"):
-        text = plain(file.read_bytes(), "latin-1")
+        text = of_deck(file.read_bytes())
         if ending == ".cdb" or is_archive(text):
             return mesh_of_archive(parse_archive(text))
     if ending == ".inp":

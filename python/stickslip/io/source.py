@@ -116,6 +116,14 @@ def read_text(path: Path, encoding: str = "ascii", *, ended: bool = False) -> st
     return text
 
 
+def of_deck(content: bytes) -> str:
+    """Return the text of a deck, see `plain`: in UTF-8, or in Latin-1 where it is none."""
+    try:
+        return plain(content, "utf-8")
+    except UnicodeDecodeError:
+        return plain(content, "latin-1")
+
+
 def plain(content: bytes, encoding: str) -> str:
     """Return text without the byte-order mark of Windows' editors, lines ended by line feeds."""
     text = content.removeprefix(_MARK).decode(encoding)
