@@ -220,3 +220,36 @@ impl HermitianModes {
         ModalDamping::new(self.project(matrix), self, |i, j| matrix[(i, j)])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::modes::modes;
+    use faer::{mat, Mat};
+
+    #[test]
+    fn a_law_couples_no_modes_whatever_rounding_left_in_its_matrix() {
+        let (mass, stiffness) = (Mat::<f64>::identity(2, 2), mat![[1.0, 0.0], [0.0, 4.0]]);
+        let damping = mat![[0.1, 1e-7], [1e-7, 0.2]];
+        let own = || modes(mass.as_ref(), stiffness.as_ref()).unwrap();
+        assert!(!own().damping(damping.as_ref()).is_diagonal());
+        let (_, by_law) = own().damped_by_law(damping.as_ref());
+        assert!(by_law.is_diagonal());
+        assert_eq!(by_law.diagonal(), own().damping(damping.as_ref()).diagonal());
+    }
+
+    #[test]
+    fn modes_of_one_frequency_are_those_of_the_damping() {
+        let (mass, stiffness) =
+            (Mat::<f64>::identity(2, 2), faer::Scale(4.0) * Mat::<f64>::identity(2, 2));
+        let (sin, cos) = 0.6_f64.sin_cos();
+        let turn = mat![[cos, -sin], [sin, cos]];
+        let damping = &turn * mat![[0.1, 0.0], [0.0, 0.3]] * turn.transpose();
+        let (modes, by_law) =
+            modes(mass.as_ref(), stiffness.as_ref()).unwrap().damped_by_law(damping.as_ref());
+        let modal = modes.shapes.transpose() * &damping * &modes.shapes;
+        let mut each = by_law.diagonal();
+        each.sort_by(f64::total_cmp);
+        assert!((each[0] - 0.1).abs() < 1e-14 && (each[1] - 0.3).abs() < 1e-14);
+        assert!(modal[(0, 1)].abs() < 1e-14);
+    }
+}
