@@ -62,9 +62,9 @@ TEXTS = {
     "it.",
     "no-error-estimate": "The error of leaving the higher harmonics out was not estimated; "
     "estimate=True does it.",
-    "mass-scaling": "{modes} modes, up to {fastest:.4g} rad/s, were slowed to {slowed:.4g} rad/s, "
-    "by mass that moves with them alone; by an estimate the contacts move differently by "
-    "{change:.1e} of their motion.",
+    "mass-scaling": "Modes of up to {fastest:.4g} rad/s, {modes} in all, were slowed to "
+    "{slowed:.4g} rad/s by mass that moves in their shapes alone; by an estimate the contacts move "
+    "differently by {change:.1e} of their motion.",
     "mass-scaling/none": "No mode can be slowed to a tolerance of {tolerance:g}: all are as they "
     "are.",
     "half-period": "Only motions of the period of the forces were sought.",

@@ -345,11 +345,16 @@ def refusal(error: ValueError, model: Model) -> ModelError:
     # A travelling wave is computed on several sectors.
     dof %= len(model.structure)
     mass = model.structure.mass[dof, dof]
-    return ModelError(
+    reason = (
         f"mass of dof {brief(model.structure.dofs[dof])}: with {mass:.3g} kg it moves "
         f"{ratio:.2g} times faster than omega = {omega:.6g} rad/s, too fast to follow in time; "
-        "condense this dof statically, give mass_scaling=1e-5 to exact_response or transient, or "
-        "balance harmonics with forced_response"
+        "condense this dof statically,"
+    )
+    return ModelError(
+        f"{reason} give mass_scaling=1e-5 to exact_response or transient, or balance harmonics "
+        "with forced_response",
+        study=f"{reason} slow it with mass_scaling = 1e-5 in an analysis of kind 'exact' or "
+        "'transient', or balance harmonics with kind 'forced-response'",
     )
 
 
