@@ -14,6 +14,7 @@ from stickslip import plot
 from stickslip.html.figures import drawn
 from stickslip.results.stability import stability_of
 from stickslip.views.cycles import CycleView
+from wedges import ENDS, WEDGE
 
 K = np.array([[1e4, -1e4], [-1e4, 1e4]])
 
@@ -211,3 +212,39 @@ def test_unstable_orbits_are_dashed():
 def test_states_follow_from_multipliers(multipliers, neutral, known, state):
     found = stability_of(np.array([multipliers], complex), np.array([neutral]), np.array([known]))
     assert found.tolist() == [state]
+
+
+def told_of(result):
+    return {one.code: one for one in result.diagnostics}
+
+
+def test_limits_that_are_touched_leave_it_open_and_that_is_told():
+    """Forces out of phase press the wedge until one face slips no more."""
+    soft, stiff = (
+        ss.Structure(10.0 * np.eye(2), [[a, -b], [-b, a]], 100.0 * np.eye(2), ["x", "y"])
+        for a, b in ((4e5, 3e5), (1e6, 9e5))
+    )
+    forces = [ss.Force("left.x", 200.0), ss.Force("right.x", 200.0, phase=np.pi)]
+    model, omega = WEDGE.between(stiff, soft, **ENDS, forces=forces), [290.0, 305.0]
+    for result in (ss.exact_response(model, omega), ss.forced_response(model, omega, 15)):
+        assert result.stability.tolist() == ["unstable", "not decided"]
+        told = told_of(result)
+        assert told["unstable"].data["points"] == 1
+        assert told["stability-undecided"].data["points"] == 1
+        assert "touches its limit" in told["stability-undecided"].text
+    plain = ss.forced_response(model, omega, 15, stability=False)
+    assert told_of(plain)["stability-undecided"].text.endswith("it was left out.")
+
+
+def test_motions_that_nothing_damps_leave_it_open_and_that_is_told():
+    undamped = ss.Structure([[1.0]], [[1.0]], [[0.0]], ["x"])
+    stuck = ss.Jenkins("x", stiffness=1.0, slip_force=10.0)
+    model = ss.Model(undamped, [stuck], [ss.Force("x", 1.0)])
+    exact, balance = ss.exact_response(model, [0.5]), ss.forced_response(model, [0.5], 3)
+    assert [exact.stable[0], balance.stable[0]] == [None, None]
+    assert "1 to rounding" in told_of(exact)["stability-undecided"].text
+    assert "exact_response has multipliers" in told_of(balance)["stability-undecided"].text
+    damped = model.with_structure(ss.Structure([[1.0]], [[1.0]], [[0.1]], ["x"]))
+    for result in (ss.exact_response(damped, [0.5]), ss.forced_response(damped, [0.5], 3)):
+        assert result.stable[0] is True
+        assert "stability-undecided" not in told_of(result)

@@ -1,14 +1,18 @@
-"""What a curve says of itself where solutions need not be unique."""
+"""What curves and orbits say of themselves where solutions need not be unique or stable."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from stickslip import _core
+from stickslip.analyses.doubts import is_unique
 from stickslip.analyses.texts import told
 from stickslip.model import Model
 from stickslip.results.arrays import STABILITY, Arrays
 from stickslip.results.diagnostic import Diagnostic, present
+from stickslip.results.exact_response import OrbitArrays
+from stickslip.results.stability import stability_of
+from stickslip.settings.balance import ForcedSettings
 
 _ENDS = {
     "returned": "branch-end/returned",
@@ -18,20 +22,20 @@ _ENDS = {
 
 
 def branch_assumptions(
-    model: Model, arrays: Arrays, solution: _core.Solution
+    model: Model, settings: ForcedSettings, arrays: Arrays, solution: _core.Solution
 ) -> tuple[Diagnostic, ...]:
     """Say where a curve turns back, jumps or ends, and how much of it is unstable."""
     if not model.problem.laws_not_monotone:
-        return ()
+        unproved = bool(arrays.solved.any()) and not is_unique(model)
+        return present((unproved and told("stability-undecided/unproved"),))
     omega, folds = arrays.omega, int(arrays.fold.sum())
     last = int(np.flatnonzero(np.append(arrays.further, True))[0]) - 1
     unstable = int((arrays.stability == STABILITY.index("unstable")).sum())
-    unresolved = int(((arrays.stability == STABILITY.index("not decided")) & arrays.solved).sum())
     return present(
         (
             folds > 0 and told("folds", count=folds),
             unstable > 0 and told("unstable", points=unstable, _solved=int(arrays.solved.sum())),
-            unresolved > 0 and told("stability-undecided/points", points=unresolved),
+            _undecided(model, settings, arrays),
             _jumps(arrays),
             _astray(arrays, solution.astray),
             _further(arrays, solution.cut),
@@ -44,6 +48,36 @@ def branch_assumptions(
             ),
         )
     )
+
+
+def stability_of_orbits(model: Model, arrays: OrbitArrays) -> tuple[Diagnostic, ...]:
+    """Say how many orbits are unstable, and of how many that is not decided, and why."""
+    if model.travels:
+        return (told("stability-undecided/wave"),)
+    states = stability_of(arrays.multipliers, arrays.neutral, arrays.known)
+    unstable = int((states == "unstable").sum())
+    touching = int((arrays.solved & ~arrays.known).sum())
+    neutral = int(((states == "not decided") & arrays.known).sum())
+    of = {"_solved": int(arrays.solved.sum())}
+    return present(
+        (
+            unstable > 0 and told("unstable", points=unstable, **of),
+            touching > 0 and told("stability-undecided/touching", points=touching, **of),
+            neutral > 0 and told("stability-undecided/neutral", points=neutral, **of),
+        )
+    )
+
+
+def _undecided(model: Model, settings: ForcedSettings, arrays: Arrays) -> Diagnostic | None:
+    """Say at how many points of a curve stability is not decided, and why."""
+    points = int(((arrays.stability == STABILITY.index("not decided")) & arrays.solved).sum())
+    if not points:
+        return None
+    if model.travels:
+        return told("stability-undecided/wave")
+    if not settings.stability:
+        return told("stability-undecided/left out")
+    return told("stability-undecided/points", points=points, _solved=int(arrays.solved.sum()))
 
 
 def _jumps(arrays: Arrays) -> Diagnostic | None:

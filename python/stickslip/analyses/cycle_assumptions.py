@@ -10,6 +10,7 @@ from stickslip.analyses.texts import told
 from stickslip.model import Model
 from stickslip.results.diagnostic import Diagnostic, present
 from stickslip.results.limit_cycles import CycleArrays
+from stickslip.results.stability import stability_of
 from stickslip.settings.cycles import MOST_HARMONICS, CycleSettings
 
 
@@ -98,7 +99,8 @@ def _stability(
     if not settings.stability:
         return (told("stability-undecided/left out"),)
     along = int((~arrays.closed & arrays.known).sum())
-    unknown = int((~arrays.known).sum())
+    states = stability_of(arrays.multipliers, arrays.neutral, arrays.known)
+    unknown = int((states == "not decided").sum())
     return (
         along > 0 and told("multipliers", points=along, _followed=settings.followed),
         unknown > 0 and told("stability-undecided", points=unknown),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from stickslip import _core
 from stickslip.analyses.arguments import columns_of, observed_dofs, points_of, require_held
 from stickslip.analyses.assumptions import orbit_assumptions
+from stickslip.analyses.branch_assumptions import stability_of_orbits
 from stickslip.analyses.doubts import is_unique
 from stickslip.analyses.forced_response import forced_response
 from stickslip.analyses.free_flight import with_free_flight
@@ -127,6 +128,7 @@ def orbits_at(
         diagnostics=(
             *assumed,
             *orbit_assumptions(model, settings, dofs, arrays, solution, grid.size),
+            *stability_of_orbits(model, arrays),
         ),
     )
 

@@ -126,7 +126,7 @@ def begun_with(
             arrays=arrays,
             diagnostics=(
                 *balance_assumptions(model, kept, dofs, arrays, solution, asked),
-                *branch_assumptions(model, arrays, solution),
+                *branch_assumptions(model, kept, arrays, solution),
             ),
         )
         of_all = "" if asked is None else f" of {asked}"

@@ -273,8 +273,20 @@ TEXTS = {
     "stability-undecided/wave": "Stability is not decided: one sector of a wave has no motion of "
     "its own.",
     "stability-undecided/left out": "Stability is not decided: it was left out.",
-    "stability-undecided": "{points} points have no multipliers: their stability is not decided.",
-    "stability-undecided/points": "Points whose stability is not decided: {points}.",
+    "stability-undecided/unproved": "Stability is not decided: the laws are monotone, but the "
+    "damping leaves it open. exact_response has multipliers.",
+    "stability-undecided": "The stability of {points} points is not decided: no exact orbit with "
+    "multipliers was found, or the largest one is 1 to rounding. Look at the points beside them.",
+    "stability-undecided/points": "The stability of {points} of {_solved} motions is not decided: "
+    "a contact touches its limit without slipping, or the largest multiplier is too near to 1 for "
+    "the harmonics kept. Take more harmonics, or a transient from a state nearby.",
+    "stability-undecided/touching": "The stability of {points} of {_solved} orbits is not decided; "
+    "they have no multipliers. A contact touches its limit there without slipping, and the "
+    "stiffness on either side differs. A transient from a state nearby shows what a disturbance "
+    "becomes.",
+    "stability-undecided/neutral": "The stability of {points} of {_solved} orbits is not decided: "
+    "their largest multiplier is 1 to rounding, as where nothing damps a motion. A transient from "
+    "a state nearby shows what a disturbance becomes.",
     "stability-unknown": "Values whose stability is not decided: {count}.",
     "multipliers": "{points} points have no exact orbit nearby at their {_followed}: their "
     "multipliers are those of the exact flow along the harmonic balance.",
