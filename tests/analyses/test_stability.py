@@ -248,3 +248,31 @@ def test_motions_that_nothing_damps_leave_it_open_and_that_is_told():
     for result in (ss.exact_response(damped, [0.5]), ss.forced_response(damped, [0.5], 3)):
         assert result.stable[0] is True
         assert "stability-undecided" not in told_of(result)
+
+
+def test_an_unstable_motion_has_another_one_beside_it_and_that_is_told():
+    """Transients settle 5 % below the motion of the curve."""
+    left, right = (
+        ss.Structure(np.diag(mass), [[a, -b], [-b, c]], np.diag(damping), ["x", "y"])
+        for mass, (a, b, c), damping in (
+            ([10.89, 7.38], (7.79e5, 4.525e5, 1.086e6), [56.6, 103.0]),
+            ([6.31, 8.38], (5.036e5, 2.529e5, 9.814e5), [193.4, 123.5]),
+        )
+    )
+    wedge = ss.WedgeDamper(
+        angle=(27.84, 35.05),
+        mass=0.4276,
+        friction=0.3465,
+        tangential_stiffness=3.425e5,
+        normal_stiffness=6.576e5,
+        load=256.0,
+    )
+    forces = [ss.Force("left.x", 141.0), ss.Force("right.x", 141.0, phase=4.096)]
+    model = wedge.between(left, right, **ENDS, forces=forces)
+    for result in (
+        ss.forced_response(model, [309.717], 15, residual="bounds"),
+        ss.exact_response(model, [309.717], residual="bounds"),
+    ):
+        assert result.unique.tolist() == ["no other found"]
+        assert result.stable.tolist() == [False]
+        assert told_of(result)["other-motion"].data["points"] == 1

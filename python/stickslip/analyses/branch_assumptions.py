@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stickslip import _core
 from stickslip.analyses.doubts import is_unique
 from stickslip.analyses.texts import told
 from stickslip.model import Model
-from stickslip.results.arrays import STABILITY, Arrays
+from stickslip.results.arrays import STABILITY, UNIQUE, Arrays
 from stickslip.results.diagnostic import Diagnostic, present
 from stickslip.results.exact_response import OrbitArrays
 from stickslip.results.stability import stability_of
@@ -35,6 +36,7 @@ def branch_assumptions(
         (
             folds > 0 and told("folds", count=folds),
             unstable > 0 and told("unstable", points=unstable, _solved=int(arrays.solved.sum())),
+            _missed(arrays, np.array(STABILITY)[arrays.stability]),
             _undecided(model, settings, arrays),
             _jumps(arrays),
             _astray(arrays, solution.astray),
@@ -62,10 +64,18 @@ def stability_of_orbits(model: Model, arrays: OrbitArrays) -> tuple[Diagnostic, 
     return present(
         (
             unstable > 0 and told("unstable", points=unstable, **of),
+            _missed(arrays, states),
             touching > 0 and told("stability-undecided/touching", points=touching, **of),
             neutral > 0 and told("stability-undecided/neutral", points=neutral, **of),
         )
     )
+
+
+def _missed(arrays: Arrays, states: NDArray[np.str_]) -> Diagnostic | None:
+    """Say where bounds lack what lasts: the only motion found is unstable."""
+    alone = arrays.unique == UNIQUE.index("no other found")
+    points = int((alone & (states == "unstable")).sum())
+    return told("other-motion", points=points) if points else None
 
 
 def _undecided(model: Model, settings: ForcedSettings, arrays: Arrays) -> Diagnostic | None:

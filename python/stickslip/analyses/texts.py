@@ -245,6 +245,8 @@ TEXTS = {
     "folds": "The curve turns back in frequency at {count} folds: between them a frequency has "
     "several motions.",
     "unstable": "{points} of {_solved} motions are unstable: a disturbance leads away from them.",
+    "other-motion": "At {points} points the only motion found is unstable: there is another one, "
+    "which the bounds may not hold. A transient settles on it.",
     "jump": "The {_direction} sweep jumps to another branch between omega = {low:.6g} and "
     "{high:.6g} rad/s{_more}; a range, omega=(from, to), follows the branch around its fold.",
     "branch-unknown": "Whether the {_direction} sweep stays on its branch between omega = "
