@@ -246,7 +246,7 @@ TEXTS = {
     "several motions.",
     "unstable": "{points} of {_solved} motions are unstable: a disturbance leads away from them.",
     "other-motion": "At {points} points the only motion found is unstable: there is another one, "
-    "which the bounds may not hold. A transient settles on it.",
+    "periodic or not, which the bounds may not hold. A transient shows it.",
     "jump": "The {_direction} sweep jumps to another branch between omega = {low:.6g} and "
     "{high:.6g} rad/s{_more}; a range, omega=(from, to), follows the branch around its fold.",
     "branch-unknown": "Whether the {_direction} sweep stays on its branch between omega = "
