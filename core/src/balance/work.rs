@@ -38,7 +38,7 @@ fn of_law(law: &dyn ContactLaw, slots: usize, load: &SlipLoad, tangent: bool) ->
     let Some(form) = law.closed_form() else { return 0.0 };
     let resolved = form.resolves();
     if resolved == usize::MAX {
-        return form.effort(slots, load.active && tangent);
+        return form.effort(slots, load, load.active && tangent);
     }
     let components = law.displacements() as f64;
     let coefficients = components * slots as f64;
@@ -97,7 +97,10 @@ mod tests {
     use crate::balance::solution::{Point, PointStatus};
     use crate::balance::unknowns::Unknowns;
     use crate::balance::ExactOrbits;
-    use crate::contact::{Aft, BoucWen, Cubic};
+    use crate::contact::{
+        Aft, BoucWen, Closure, Coulomb, Cubic, HarmonicForce as _, Motion, Residual,
+    };
+    use crate::fourier::{Harmonics, SampleTable};
     use crate::model::{Contact, Model};
     use crate::structure::{HarmonicLoad, Structure};
     use faer::{c64, mat, Mat};
@@ -189,6 +192,28 @@ mod tests {
         };
         let ([value, tangent], [values, tangents]) = (of(1), of(50));
         assert!(values > 20.0 * value && tangents > 40.0 * tangent);
+    }
+
+    /// A contact in space that slips is paid for by what its slip takes.
+    #[test]
+    fn panels_are_paid_for() {
+        let law = Coulomb::new(2, 0.4, 80.0, Some(100.0), Closure::Preload(10.0)).unwrap();
+        let table = SampleTable::new(Harmonics::new(15, false));
+        let slots = table.harmonics().slots();
+        let of = |size: f64| {
+            let mut displacement = vec![0.0; 3 * slots];
+            for (at, u) in [(1, size), (slots + 2, 0.5 * size), (2 * slots + 1, 0.02)] {
+                displacement[at] = u;
+            }
+            let residual = Residual::Centred;
+            let motion = Motion { table: &table, displacement: &displacement, residual };
+            let mut load = SlipLoad::default();
+            law.slip_load(motion, true, &mut load);
+            (load.panels, of_law(&law, slots, &load, true))
+        };
+        let ((none, stuck), (panels, slipping)) = (of(0.01), of(0.2));
+        assert!(none == 0 && panels > 10);
+        assert!(slipping > 5.0 * stuck, "{slipping} {stuck}");
     }
 
     /// A search is on the account of the point, and hears what is left of it.

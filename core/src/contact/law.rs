@@ -43,6 +43,8 @@ pub struct SlipLoad {
     pub repeated: Option<Repeated>,
     /// Rounds of a march until its state has repeated.
     pub rounds: usize,
+    /// Panels on which slip in two directions was solved for.
+    pub panels: usize,
 }
 
 impl SlipLoad {
@@ -59,7 +61,7 @@ impl SlipLoad {
             self.tangent.resize(size * size, 0.0);
         }
         self.active = false;
-        self.rounds = 0;
+        (self.rounds, self.panels) = (0, 0);
     }
 
     /// Gives a tangent of zeros its room.
@@ -310,9 +312,9 @@ pub trait HarmonicForce {
         usize::MAX
     }
 
-    /// Time that an evaluation usually takes, with its tangent or without, in so many coefficients per component
-    /// \[ns\]: work is counted by it.
-    fn effort(&self, slots: usize, tangent: bool) -> f64 {
+    /// Time that an evaluation usually takes that has led to a load, with its tangent or without, in so many
+    /// coefficients per component \[ns\]: work is counted by it.
+    fn effort(&self, slots: usize, _load: &SlipLoad, tangent: bool) -> f64 {
         effort_of([1e3, 60.0, 4.0], slots, tangent)
     }
 

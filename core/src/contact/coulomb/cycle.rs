@@ -76,6 +76,12 @@ impl Cycle {
         self.stretches.iter().any(|stretch| of(&stretch.state))
     }
 
+    /// Panels of slip in two directions.
+    pub(super) fn panels(&self) -> usize {
+        let turning = |stretch: &&Stretch| matches!(stretch.state, State::Turning(_));
+        self.stretches.iter().filter(turning).count()
+    }
+
     /// Whether it slips in the only direction that there is, against friction.
     fn rubs(&self) -> bool {
         self.has(|state| matches!(state, State::Along(sign) if *sign != 0.0))

@@ -252,7 +252,7 @@ impl ContactLaw for Masing {
 }
 
 impl HarmonicForce for Masing {
-    fn effort(&self, slots: usize, tangent: bool) -> f64 {
+    fn effort(&self, slots: usize, _load: &SlipLoad, tangent: bool) -> f64 {
         effort_of([4e3, 240.0, 16.0], slots, tangent)
     }
 

@@ -134,7 +134,7 @@ impl ContactLaw for StructuralDamper {
 }
 
 impl HarmonicForce for StructuralDamper {
-    fn effort(&self, slots: usize, tangent: bool) -> f64 {
+    fn effort(&self, slots: usize, _load: &SlipLoad, tangent: bool) -> f64 {
         effort_of([1.2e4, 900.0, 12.0], self.displacements() * slots, tangent)
     }
 
