@@ -70,7 +70,7 @@ impl<'a> Condensed<'a> {
     ) -> Self {
         let model = model.into();
         Self {
-            linear: Linear::new(model.compliance(), table, slopes),
+            linear: Linear::new(&model, table, slopes),
             slopes,
             fine: slopes,
             loads: vec![SlipLoad::sparing(); model.laws().len()],

@@ -54,7 +54,7 @@ impl Condensed<'_> {
         let (slots, slipping) = (self.table.harmonics().slots(), self.active_points().len());
         let compliance = self.model.compliance();
         if self.by_products.replaced && !may_be_formed(compliance, slots, slipping) {
-            let products = Linear::new(compliance, self.table, self.slopes);
+            let products = Linear::new(&self.model, self.table, self.slopes);
             self.by_products.replaced = !self.take(products);
         }
     }

@@ -344,3 +344,19 @@ fn estimates_of_coupled_points_reach_less_far() {
     let [nodes, alone] = [&nodes, &alone].map(reach);
     assert!(nodes < alone, "{nodes} and {alone}");
 }
+
+/// Nodes that open yield all together: their Jacobian is dearer than that of as many single points.
+#[test]
+fn nodes_are_solved_by_products_where_single_points_are_not() {
+    let table = SampleTable::new(Harmonics::new(3, false));
+    let by_products = |laws: Vec<Box<dyn ContactLaw>>| {
+        let model = model(laws, Damping::Mass, 1.0);
+        let equations = Condensed::new(&model, &table, Residual::Centred, false);
+        matches!(equations.linear, Linear::Modal(_))
+    };
+    let node = Coulomb::new(2, 0.4, 80.0, Some(100.0), Closure::Preload(1.0)).unwrap();
+    let nodes = (0..16).map(|_| -> Box<dyn ContactLaw> { Box::new(node.clone()) });
+    let single = Jenkins::new(80.0, 1.0).unwrap();
+    let singles = (0..48).map(|_| -> Box<dyn ContactLaw> { Box::new(single.clone()) });
+    assert_eq!([by_products(nodes.collect()), by_products(singles.collect())], [true, false]);
+}

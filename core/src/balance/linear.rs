@@ -2,11 +2,12 @@
 //! loads, by dense receptances, through the modes of the stuck structure or around a ring of sectors.
 
 use super::krylov_newton::KrylovNewton;
-use super::modal_work::suits;
+use super::modal_work::suits_laws;
 use super::ring::{RingAnswers, RingNewton};
 use super::slip_jacobian::SlipJacobian;
 use super::unknowns::{gather, scatter};
 use crate::fourier::{Harmonics, SampleTable};
+use crate::model::Model;
 use crate::structure::{
     Compliance, ContactCoordinates, ModalOrders, Quantity, Receptance, Request,
 };
@@ -42,10 +43,10 @@ pub(super) enum Factor {
 }
 
 impl Linear {
-    pub(super) fn new(compliance: &dyn Compliance, table: &SampleTable, slopes: bool) -> Self {
-        if compliance.ring().is_some() {
+    pub(super) fn new(model: &Model, table: &SampleTable, slopes: bool) -> Self {
+        if model.compliance().ring().is_some() {
             Self::Ring { orders: Vec::new(), slopes }
-        } else if suits(compliance, table.harmonics()) {
+        } else if suits_laws(model, table.harmonics()) {
             Self::Modal(ModalOrders::default())
         } else {
             Self::dense(table, slopes)

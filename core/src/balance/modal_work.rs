@@ -1,6 +1,7 @@
 //! The work of a point whose receptances are never formed, and whether it is less than with them.
 
 use crate::fourier::Harmonics;
+use crate::model::Model;
 use crate::structure::Compliance;
 
 /// Unknowns of the largest Jacobian that is formed where products with the modes would do.
@@ -27,6 +28,12 @@ const SLIPPING: f64 = 0.5;
 /// How many times less work it has to be: many small products are slower than one factorisation.
 const WORTH: f64 = 4.0;
 
+/// Products of a step of nodes that open: 40 to 70 of 45 nodes.
+const PRODUCTS_OF_NODES: f64 = 60.0;
+/// How many times less work they have to be. Measured with 45 nodes, of 3 and 5 harmonics, an operation takes as long
+/// as one of a factorisation.
+const WORTH_OF_NODES: f64 = 2.0;
+
 /// Whether products with the modes are less work than dense receptances and a factorisation.
 pub(super) fn suits(compliance: &dyn Compliance, harmonics: &Harmonics) -> bool {
     let Some(modes) = compliance.contact_modes() else { return false };
@@ -36,6 +43,21 @@ pub(super) fn suits(compliance: &dyn Compliance, harmonics: &Harmonics) -> bool 
     let block = SLIPPING * contacts * slots;
     let dense = formed + FACTORISATIONS * 2.0 / 3.0 * block.powi(3);
     dense > WORTH * PRODUCTS * modes.work(contacts, slots)
+}
+
+/// The same of a solution under laws of which some couple several points. Nodes that open yield all together:
+/// then a step takes so many products, and both ways are large ones.
+pub(super) fn suits_laws(model: &Model, harmonics: &Harmonics) -> bool {
+    let compliance = model.compliance();
+    let Some(modes) = compliance.contact_modes() else { return false };
+    if suits(compliance, harmonics) {
+        return true;
+    }
+    let (contacts, slots) = (compliance.contacts() as f64, harmonics.slots() as f64);
+    let laws = model.laws().iter().map(|law| law.displacements() as f64);
+    let yielding: f64 = laws.filter(|points| *points > 1.0).sum();
+    let factored = 2.0 / 3.0 * (yielding * slots).powi(3);
+    factored > WORTH_OF_NODES * PRODUCTS_OF_NODES * modes.work(contacts, slots)
 }
 
 /// Whether the whole Jacobian is too large to be formed, along a curve too.
