@@ -73,7 +73,7 @@ def stability_of_orbits(model: Model, arrays: OrbitArrays) -> tuple[Diagnostic, 
 
 def _missed(arrays: Arrays, states: NDArray[np.str_]) -> Diagnostic | None:
     """Say where bounds lack what lasts: the only motion found is unstable."""
-    alone = arrays.unique == UNIQUE.index("no other found")
+    alone = arrays.unique == UNIQUE.index("yes")
     points = int((alone & (states == "unstable")).sum())
     return told("other-motion", points=points) if points else None
 
