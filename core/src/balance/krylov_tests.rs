@@ -355,7 +355,7 @@ fn nodes_are_solved_by_products_where_single_points_are_not() {
         matches!(equations.linear, Linear::Modal(_))
     };
     let node = Coulomb::new(2, 0.4, 80.0, Some(100.0), Closure::Preload(1.0)).unwrap();
-    let nodes = (0..16).map(|_| -> Box<dyn ContactLaw> { Box::new(node.clone()) });
+    let nodes = (0..16).map(|_| -> Box<dyn ContactLaw> { Box::new(node) });
     let single = Jenkins::new(80.0, 1.0).unwrap();
     let singles = (0..48).map(|_| -> Box<dyn ContactLaw> { Box::new(single.clone()) });
     assert_eq!([by_products(nodes.collect()), by_products(singles.collect())], [true, false]);
