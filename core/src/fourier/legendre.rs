@@ -2,9 +2,8 @@
 
 use std::f64::consts::PI;
 
-/// Steps of Newton's method after which nodes are known to rounding, and the last one of them.
+/// Steps of Newton's method after which nodes are known to rounding.
 const STEPS: usize = 20;
-const LAST: f64 = 1e-15;
 
 /// The polynomials of all degrees up to one, which is at least 1, at x in [−1, 1].
 pub(crate) fn legendre(degree: usize, x: f64) -> Vec<f64> {
@@ -25,19 +24,21 @@ fn next(k: usize, x: f64, [last, own]: [f64; 2]) -> f64 {
 /// on the Legendre polynomial from the Chebyshev nodes.
 pub(crate) fn gauss_legendre(count: usize) -> Vec<(f64, f64)> {
     let degree = count as f64;
+    let value_and_slope = |x: f64| {
+        let [last, own] = (1..count).fold([1.0, x], |p, k| [p[1], next(k, x, p)]);
+        (own, degree * (x * own - last) / (x * x - 1.0))
+    };
     let node = |i: usize| {
         let mut x = -(PI * (i as f64 + 0.75) / (degree + 0.5)).cos();
-        let mut slope = 1.0;
         for _ in 0..STEPS {
-            let [last, own] = (0..count).fold([0.0, 1.0], |p, k| [p[1], next(k, x, p)]);
-            slope = degree * (x * own - last) / (x * x - 1.0);
-            let step = own / slope;
-            x -= step;
-            if step.abs() < LAST {
+            let (value, slope) = value_and_slope(x);
+            let moved = x - value / slope;
+            if moved == x {
                 break;
             }
+            x = moved;
         }
-        (x, 2.0 / ((1.0 - x * x) * slope * slope))
+        (x, 2.0 / ((1.0 - x * x) * value_and_slope(x).1.powi(2)))
     };
     (0..count).map(node).collect()
 }
