@@ -72,13 +72,26 @@ def test_modes_too_fast_to_follow_are_followed():
     assert slowed.amplitude("0") == pytest.approx(balance.amplitude("0"), rel=1e-4)
 
 
-def test_transients_take_longer_steps_too():
+def test_transients_are_slowed_too():
     model, omega = chain(3)
     dof = model.forces[0].dof
     whole = ss.transient(model, omega, periods=300, keep=1)
     slowed = ss.transient(model, omega, periods=300, keep=1, mass_scaling=TOLERANCE)
     assert slowed.diagnostics[0].code == "mass-scaling"
     assert slowed.amplitudes(dof)[-1] == pytest.approx(whole.amplitudes(dof)[-1], rel=TOLERANCE)
+
+
+def test_a_body_that_contacts_alone_hold_is_slowed_too():
+    """Rigid motions have no stiffness; one of them moves neither the contact nor the force."""
+    stiffness = np.zeros((4, 4))
+    stiffness[:3, :3] = 1e9 * np.array([[1.0, -1.0, 0.0], [-1.0, 2.0, -1.0], [0.0, -1.0, 1.0]])
+    structure = ss.Structure(np.diag([1.0, 1e-3, 1.0, 1.0]), stiffness, ss.Rayleigh(mass=1.0))
+    contact = ss.Jenkins("0", stiffness=1e4, slip_force=5.0)
+    model = ss.Model(structure, [contact], [ss.Force("2", 3.0)])
+    whole = ss.exact_response(model, [60.0])
+    slowed = ss.exact_response(model, [60.0], mass_scaling=TOLERANCE)
+    assert "slowed" in slowed.diagnostics[0].data
+    assert slowed.amplitude("2") == pytest.approx(whole.amplitude("2"), rel=TOLERANCE)
 
 
 def test_what_has_no_fast_modes_stays_as_it_is():

@@ -67,11 +67,13 @@ def mass_scaled(
             f"mass_scaling: dof {brief(dof)} has no mass; condense it, or leave mass_scaling out"
         )
     squared, shapes = eigen_pencil(structure.stiffness, structure.mass)
-    modes = np.sqrt(np.maximum(squared, 0.0))
+    # Rigid motions have hardly any stiffness: a place that they do not move is not moved by them.
+    modes = np.sqrt(np.maximum(squared, np.finfo(np.float64).tiny))
     harmonics = sorted({force.harmonic for force in model.forces} - {0})
     frequencies = np.outer(harmonics, omega).ravel()
-    least = _ringing(model, shapes, modes, frequencies.max(initial=0.0)) / tolerance
-    least = np.maximum(least, np.sqrt(_inertia(model, shapes, modes, frequencies) / tolerance))
+    with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
+        least = _ringing(model, shapes, modes, frequencies.max(initial=0.0)) / tolerance
+        least = np.maximum(least, np.sqrt(_inertia(model, shapes, modes, frequencies) / tolerance))
     least = np.maximum(
         least, modes[-1] * np.sqrt(np.finfo(np.float64).eps / (_ROUNDING * tolerance))
     )
@@ -97,8 +99,7 @@ def _ringing(model: Model, shapes: Matrix, modes: Float, omega: float) -> Float:
         return np.zeros(modes.size)
     # Forces of all points at once, each for a displacement of one.
     forces = sum(np.abs(stiffness).sum(axis=1) @ np.abs(rows) for rows, stiffness in pairs)
-    with np.errstate(divide="ignore"):
-        each = np.vstack([np.abs(rows) for rows, _ in pairs]) * (forces / modes**2)
+    each = np.vstack([np.abs(rows) for rows, _ in pairs]) * forces / modes**2
     ringing: Float = np.cumsum(each[:, ::-1], axis=1).max(axis=0)
     return _CHANGES * omega * ringing
 
@@ -109,12 +110,11 @@ def _inertia(model: Model, shapes: Matrix, modes: Float, frequencies: Float) -> 
     if not frequencies.size:
         return changes
     highest = frequencies.max()
-    with np.errstate(divide="ignore", invalid="ignore"):
-        for force in model.forces:
-            row = shapes[structure.index(force.dof)] ** 2
-            fast = np.cumsum((row / modes**2)[::-1])
-            slow = np.cumsum(row / np.maximum(modes, highest) ** 2)
-            changes = np.fmax(changes, highest**2 * fast / np.append(slow[-2::-1], 0.0))
+    for force in model.forces:
+        row = shapes[structure.index(force.dof)] ** 2
+        fast = np.cumsum((row / modes**2)[::-1])
+        slow = np.cumsum(row / np.maximum(modes, highest) ** 2)
+        changes = np.fmax(changes, highest**2 * fast / np.append(slow[-2::-1], 0.0))
     stuck = structure.stiffness + sum(
         (rows.T @ one.stuck_stiffness @ rows)
         for one in model.contacts
