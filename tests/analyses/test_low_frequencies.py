@@ -119,3 +119,26 @@ def test_exact_orbits_take_over_where_normal_loads_vary(ratio: float) -> None:
         size = exact.amplitude(dof)[0]
         error = abs(frf.amplitude(dof)[0] - size)
         assert error <= frf.error_estimate(dof)[0] + 1e-3 * size
+
+
+def test_points_whose_neighbours_lead_nowhere_begin_with_exact_orbits() -> None:
+    stiffness = 1e5 * (2 * np.eye(12) - np.eye(12, k=1) - np.eye(12, k=-1))
+    chain = ss.Structure(np.eye(12), stiffness, ss.ModalDamping(1e-4))
+    dofs = chain.dofs
+    contacts = [
+        ss.Jenkins(dofs[2], stiffness=1e7, slip_force=0.3),
+        ss.Jenkins(dofs[10], dofs[1], stiffness=1.2e7, slip_force=0.3),
+        ss.Jenkins(dofs[3], dofs[5], stiffness=3e6, slip_force=0.3),
+    ]
+    model = ss.Model(chain, contacts, [ss.Force(dofs[3], amplitude=1.0)])
+    omega = np.linspace(68, 150, 20)
+    frf = ss.forced_response(model, omega, 131, observe=[dofs[6]])
+    exact = ss.exact_response(model, omega, observe=[dofs[6]])
+    assert frf.converged.all()
+    assert exact.converged.all()
+    np.testing.assert_allclose(frf.amplitude(dofs[6]), exact.amplitude(dofs[6]), rtol=2e-4)
+    # Newton's method alone takes 333, and 346 with 8 homotopies.
+    assert frf.counters["evaluations"] < 20 * omega.size
+    curve = ss.damper_curve(model, slip_force=[0.3], dof=dofs[6])
+    assert curve.counters["evaluations"] < 100 * curve.counters["points"]
+    assert curve.counters["homotopies"] == 0

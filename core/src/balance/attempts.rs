@@ -3,6 +3,7 @@
 use super::condensed::{Condensed, Path};
 use super::forced::ForcedBalance;
 use super::limit_load::is_carried_away;
+use super::rough_start::Rough;
 use super::settings::{resolving, Method, Resolution};
 use super::solution::{Point, PointStatus};
 use super::unknowns::Unknowns;
@@ -22,6 +23,9 @@ const UNBALANCED: f64 = 1e3;
 
 /// Samples per period by which a motion is tried that exact integrals do not lead to.
 const BLURRED: usize = 512;
+
+/// Newton steps after which an exact orbit may be the better start: neighbours lead on in five.
+const BRIEF: usize = 15;
 
 impl ForcedBalance<'_> {
     /// Solves at one frequency with some harmonics and samples.
@@ -74,7 +78,11 @@ impl ForcedBalance<'_> {
         start: Option<&Unknowns>,
     ) -> Result<Point, Error> {
         let rough = start.map(|start| self.rough_start(resolution, omega, start)).transpose()?;
-        let start = rough.as_ref().and_then(Option::as_ref).or(start);
+        let lost = matches!(rough, Some(Rough::Lost));
+        let start = match &rough {
+            Some(Rough::Found(rough)) => Some(rough),
+            _ => start,
+        };
         let table = self.table(resolution.harmonics);
         let model = self.evaluated(resolution.samples)?;
         let interrupted = self.interruption();
@@ -86,7 +94,8 @@ impl ForcedBalance<'_> {
         }
         let states = self.neighbour.states.iter();
         equations.loads.iter_mut().zip(states).for_each(|(load, s)| load.repeated.clone_from(s));
-        let solved = self.solve_equations(&mut equations, omega, start, resolution.samples)?;
+        let solved =
+            self.solve_equations(&mut equations, omega, (start, lost), resolution.samples)?;
         let states = equations.loads.iter_mut().map(|load| load.repeated.take());
         self.neighbour.states = states.collect();
         self.add_profile(&equations.profile);
@@ -108,7 +117,7 @@ impl ForcedBalance<'_> {
         &mut self,
         equations: &mut Condensed<'_>,
         omega: f64,
-        start: Option<&Unknowns>,
+        (start, lost): (Option<&Unknowns>, bool),
         samples: Option<usize>,
     ) -> Result<Point, Error> {
         let contacts = self.model.compliance().contacts();
@@ -123,7 +132,7 @@ impl ForcedBalance<'_> {
             || equations.stuck_response().to_vec(),
             |unknowns| unknowns.recast(harmonics),
         );
-        let mut report = self.iterate(equations, &mut x);
+        let mut report = self.begin(equations, omega, &mut x, lost);
         if has_failed(&report) && self.has_no_bound(omega) {
             return Ok(Point::empty(omega, PointStatus::Singular, self.observe.len(), contacts));
         }
@@ -132,7 +141,7 @@ impl ForcedBalance<'_> {
             // A neighbour in another state of the contacts may mislead.
             let spent = report.iterations;
             x = equations.stuck_response().to_vec();
-            report = self.iterate(equations, &mut x);
+            report = self.iterate(equations, &mut x, self.settings.newton);
             report.iterations += spent;
         }
         let orbit = has_failed(&report) && self.start_again(equations, omega, &mut x, &mut report);
@@ -179,13 +188,47 @@ impl ForcedBalance<'_> {
         Ok(point)
     }
 
+    /// The chosen method from `x`; where Newton's is lost on its way, from an exact orbit that costs less.
+    fn begin(
+        &mut self,
+        equations: &mut Condensed<'_>,
+        omega: f64,
+        x: &mut Vec<f64>,
+        lost: bool,
+    ) -> Report {
+        let newton = self.settings.newton;
+        let mut report = Report { outcome: Outcome::Stalled, iterations: 0, residual: f64::NAN };
+        let orbit = lost || self.favours_orbit(omega, equations.harmonics().highest());
+        if !lost {
+            let most = if orbit { BRIEF } else { usize::MAX };
+            let max_iterations = most.min(newton.max_iterations);
+            report = self.iterate(equations, x, NewtonSettings { max_iterations, ..newton });
+            if report.outcome != Outcome::Stalled || report.iterations < most {
+                return report;
+            }
+            self.neighbour.lose();
+        }
+        self.start_again(equations, omega, x, &mut report);
+        if has_failed(&report) {
+            let spent = report.iterations;
+            report = self.iterate(equations, x, newton);
+            report.iterations += spent;
+        }
+        report
+    }
+
     /// The chosen method from `x`.
-    fn iterate(&mut self, equations: &mut Condensed<'_>, x: &mut [f64]) -> Report {
+    fn iterate(
+        &mut self,
+        equations: &mut Condensed<'_>,
+        x: &mut [f64],
+        settings: NewtonSettings,
+    ) -> Report {
         let Method::Broyden(first) = self.settings.method else {
-            let report = newton(equations, x, self.settings.newton);
+            let report = newton(equations, x, settings);
             return self.if_sound(report, x, equations);
         };
-        let (report, effort) = broyden(equations, x, self.settings.newton, first);
+        let (report, effort) = broyden(equations, x, settings, first);
         equations.profile.factorisations += effort.jacobians;
         self.profile.updates += effort.updates;
         self.profile.restarts += usize::from(effort.jacobians > 1);

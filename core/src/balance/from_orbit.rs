@@ -18,6 +18,10 @@ const USUAL_EVENTS: usize = 4;
 const ASTRAY: f64 = 10.0;
 /// An estimate is above a fifth of the error but at one point of a thousand.
 const CAUTION: f64 = 5.0;
+/// Newton's method that has lost its way takes at least so many times what it usually does.
+const OF_LOST: f64 = 6.0;
+/// Operations of the matrices of any orbit, over the third power of the degrees of freedom.
+const OF_MATRICES: f64 = 200.0;
 /// Operations of an orbit that nobody waits for, some minutes.
 const LONGEST_WAIT: f64 = 1e11;
 
@@ -74,6 +78,16 @@ impl ForcedBalance<'_> {
             return None;
         }
         self.charged(|| orbits.orbit(omega, order))
+    }
+
+    /// Whether an orbit costs less than the steps with harmonics up to `order` that lost their way.
+    pub(super) fn favours_orbit(&self, omega: f64, order: usize) -> bool {
+        let contacts = self.model.compliance().contacts();
+        let most = OF_LOST * self.price(contacts).of(order);
+        let least = OF_MATRICES * (self.model.compliance().dofs() as f64).powi(3);
+        let price = || self.rescue?.price(omega, USUAL_EVENTS * contacts, order);
+        // Orbits of many degrees of freedom would take long to prepare.
+        self.may_begin_with_orbit(order) && least <= most && price().is_some_and(|own| own <= most)
     }
 
     /// Contact displacements up to `highest` of a motion that settles in time, where no homotopy leads on.

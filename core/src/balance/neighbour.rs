@@ -33,6 +33,8 @@ pub(super) struct Neighbour {
     /// States that marches of the contacts have repeated: those at the next point begin with them.
     pub(super) states: Vec<Option<Repeated>>,
     pub(super) piece: SmoothPiece,
+    /// Points that are not tried from their neighbours, for none led to the last one.
+    lost: usize,
 }
 
 impl Neighbour {
@@ -55,6 +57,18 @@ impl Neighbour {
         } else {
             f64::INFINITY
         }
+    }
+
+    /// Newton's method did not come from a neighbour to a point.
+    pub(super) fn lose(&mut self) {
+        self.lost = SERVED;
+    }
+
+    /// Whether it will not come to the next one either.
+    pub(super) fn is_lost_again(&mut self) -> bool {
+        let lost = self.lost > 0;
+        self.lost -= usize::from(lost);
+        lost
     }
 
     /// Notes what an estimate took.

@@ -33,7 +33,23 @@ const STEPS: [f64; 2] = [1e-2, 1e-4];
 /// Points on such ways that are solved at most.
 const MOST_ASIDE: usize = 400;
 
+/// What fewer harmonics make of an extrapolation.
+pub(super) enum Rough {
+    /// It is as good as theirs, or there is nothing else to begin with.
+    Near,
+    /// It was far from the solution; here is a better one.
+    Found(Unknowns),
+    /// Newton's method did not come to them, or not from the last such extrapolation.
+    Lost,
+}
+
 impl ForcedBalance<'_> {
+    /// Whether a point with harmonics up to `order` may begin with an exact orbit: there is one motion alone.
+    pub(super) fn may_begin_with_orbit(&self, order: usize) -> bool {
+        let newton = self.settings.method == Method::Newton;
+        newton && order >= WORTHWHILE && self.is_monotone() && self.rescue.is_some()
+    }
+
     /// Fewer harmonics, where they cost a small part only and leave out no load.
     pub(super) fn coarser(&mut self, fine: Resolution) -> Option<Resolution> {
         let harmonics = fine.harmonics / COARSER;
@@ -46,15 +62,17 @@ impl ForcedBalance<'_> {
         suits.then_some(Resolution { harmonics, ..fine })
     }
 
-    /// A start for a point, from an extrapolation that fewer harmonics find far from the solution.
+    /// What fewer harmonics make of the extrapolation to a point.
     pub(super) fn rough_start(
         &mut self,
         resolution: Resolution,
         omega: f64,
         start: &Unknowns,
-    ) -> Result<Option<Unknowns>, Error> {
+    ) -> Result<Rough, Error> {
         let climbs = start.harmonics.highest() < resolution.harmonics;
-        let Some(coarse) = self.coarser(resolution).filter(|_| !climbs) else { return Ok(None) };
+        let Some(coarse) = self.coarser(resolution).filter(|_| !climbs) else {
+            return Ok(Rough::Near);
+        };
         let table = self.table(coarse.harmonics);
         let model = self.evaluated(coarse.samples)?;
         let interrupted = self.interruption();
@@ -62,15 +80,23 @@ impl ForcedBalance<'_> {
         equations.watch(&interrupted);
         equations.granted = self.left();
         let mut x = start.recast(table.harmonics());
-        let found = equations.set_omega(omega).is_ok() && {
+        let far = equations.set_omega(omega).is_ok() && {
             let (mut defect, mut step) = (vec![0.0; x.len()], vec![0.0; x.len()]);
             equations.residual(&x, &mut defect);
-            let far =
-                equations.solve(&defect, &mut step) && equations.relative_size(&step, &x) > NEAR;
-            far && newton(&mut equations, &mut x, ROUGH).outcome == Outcome::Converged
+            equations.solve(&defect, &mut step) && equations.relative_size(&step, &x) > NEAR
         };
+        let again = far && self.neighbour.is_lost_again();
+        let found =
+            far && !again && newton(&mut equations, &mut x, ROUGH).outcome == Outcome::Converged;
         self.add_profile(&equations.profile);
-        Ok(found.then(|| start.with_lower(table.harmonics(), &x)))
+        if found {
+            return Ok(Rough::Found(start.with_lower(table.harmonics(), &x)));
+        }
+        let lost = far && !again && self.favours_orbit(omega, resolution.harmonics);
+        if lost {
+            self.neighbour.lose();
+        }
+        Ok(if lost || again { Rough::Lost } else { Rough::Near })
     }
 }
 

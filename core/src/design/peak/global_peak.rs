@@ -11,6 +11,7 @@ use crate::balance::{
 };
 use crate::fourier::Measure;
 use crate::model::Model;
+use crate::orbit::OrbitInitialGuess;
 use crate::Error;
 use std::sync::Arc;
 
@@ -286,10 +287,15 @@ impl<'a> PeakSearch<'a> {
         seeds: &[Sample],
     ) -> Result<Option<Found>, Error> {
         let settings = self.settings.at(resolution);
+        let orbits = OrbitInitialGuess::new(model, settings.residual, &[], self.progress);
         // Nothing is observed: a point of the search needs no error estimate.
         let mut balance = ForcedBalance::new(model, settings, &[])?
             .watched(self.progress)
             .remembering(std::mem::take(&mut self.memory));
+        if model.is_monotone() {
+            // Of several motions an orbit may be another one.
+            balance = balance.rescued(&orbits);
+        }
         balance.report(self.share);
         let aim = self.quest.aim(self.precision);
         let table = balance.table(resolution.harmonics);
