@@ -5,10 +5,10 @@ use crate::problem::{
     harmonic_loads, ring_coupling, sector_contacts, Forces, Problem, SectorContactSpec, Table,
 };
 use crate::settings::{self, get, harmonic, measure};
-use crate::watch::{raise_unless_interrupt, watched_parts, whole};
+use crate::watch::{followed, raise_unless_interrupt, watched_parts};
 use pyo3::prelude::*;
 use std::sync::Arc;
-use stickslip_core::balance::Settings;
+use stickslip_core::balance::{Progress, Settings};
 use stickslip_core::design::{self, study, GlobalPeak, Pattern, PeakQuery};
 use stickslip_core::fourier::Measure;
 
@@ -66,7 +66,7 @@ fn row(summit: &GlobalPeak) -> Row {
 
 /// The highest point of every group of DOFs, of each of which the highest.
 #[pyfunction]
-#[pyo3(signature = (problem, groups, measure, span, settings, evaluation=None))]
+#[pyo3(signature = (problem, groups, measure, span, settings, evaluation=None, progress=None))]
 pub fn summits(
     py: Python<'_>,
     problem: &Problem,
@@ -75,12 +75,14 @@ pub fn summits(
     span: (f64, f64),
     #[pyo3(from_py_with = harmonic)] settings: Settings,
     evaluation: Option<&Bound<'_, PyAny>>,
+    progress: Option<Py<PyAny>>,
 ) -> PyResult<Vec<Row>> {
     let model = Arc::clone(&problem.model);
     let query = PeakQuery { groups, measure, span };
     let settings =
         evaluation.map_or(Ok(settings), |given| settings::evaluation(given, settings))?;
-    let found = whole(py, move |look| design::summits(&model, settings, &query, None, look))?;
+    let find = move |look: &Progress<'_>| design::summits(&model, settings, &query, None, look);
+    let found = followed(py, progress, find)?;
     Ok(found.summits.iter().map(row).collect())
 }
 

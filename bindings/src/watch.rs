@@ -63,7 +63,16 @@ pub fn whole<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce(&dyn Fn(f64) -> bool) -> Result<T, Error> + Send + 'static,
 ) -> PyResult<T> {
-    let (value, raised) = watched_parts(py, None, nothing, |look, _| work(look))?;
+    followed(py, None, work)
+}
+
+/// [`whole`] work with progress: what that raises is raised, too.
+pub fn followed<T: Send + 'static>(
+    py: Python<'_>,
+    progress: Option<Py<PyAny>>,
+    work: impl FnOnce(&dyn Fn(f64) -> bool) -> Result<T, Error> + Send + 'static,
+) -> PyResult<T> {
+    let (value, raised) = watched_parts(py, progress, nothing, |look, _| work(look))?;
     raised.map_or(Ok(()), Err)?;
     value.ok_or_else(given_up)?.map_err(refused)
 }

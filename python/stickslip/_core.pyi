@@ -149,6 +149,7 @@ def summits(
     span: tuple[float, float],
     settings: HarmonicSettings | ExactSettings,
     evaluation: BalanceSettings | ExactSettings | None = None,
+    progress: Progress = None,
 ) -> list[Summit]: ...
 def mistuning_study(
     disks: Sequence[TunedDisk],

@@ -5,13 +5,16 @@ from __future__ import annotations
 import os
 import signal
 import sqlite3
+import time
 
 import numpy as np
 import pytest
 from scipy import stats
 
 import stickslip as ss
+from stickslip.analyses import sample_run
 from stickslip.results.expansion import drawn_shares, fit_expansion
+from stickslip.settings.balance import HarmonicSettings
 
 BEAM = ss.reference.snecma_beam()
 SPAN = (100.0, 300.0)
@@ -50,6 +53,42 @@ def test_samples_follow_their_distributions():
     for name, law in PARAMETERS.items():
         shares = np.sort(law.cdf(many.parameter(name)))
         assert np.abs(shares - (np.arange(64) + 0.5) / 64).max() < 1.5 / 64
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_samples_under_way_hear_ctrl_c(threads, ctrl_c, monkeypatch):
+    started = []
+
+    def endless(work, values, progress):
+        started.append(values)
+        while True:
+            progress(0.0)
+            time.sleep(1e-3)
+
+    monkeypatch.setattr(sample_run, "sampled", endless)
+    ctrl_c(0.3)
+    with pytest.raises(ss.Interrupted, match="0 of 12 samples"):
+        ss.uncertainty(BEAM, PARAMETERS, PEAK, threads=threads, **KEYS)
+    assert len(started) == threads
+
+
+@pytest.mark.parametrize(
+    ("owner", "name", "quantity"),
+    [
+        (sample_run._core, "summits", PEAK),
+        (sample_run, "optimal_damper", ss.Optimum("tip", bounds=(50.0, 500.0), omega=SPAN)),
+        (sample_run, "nonlinear_modes", ss.Backbone(amplitude=(1e-4, 1e-3))),
+    ],
+)
+def test_every_quantity_tells_its_progress(owner, name, quantity, monkeypatch):
+    def end(share):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(owner, name, lambda *_, progress, **__: progress(0.5))
+    values = np.array([[2e7]])
+    work = sample_run.Samples(BEAM, ("stiffness",), quantity, HarmonicSettings.of(), values, [0])
+    with pytest.raises(KeyboardInterrupt):
+        sample_run.sampled(work, values[0], end)
 
 
 @pytest.mark.slow

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import closing
+from functools import partial
 from itertools import islice
 from typing import Any, NamedTuple
 
@@ -16,8 +17,8 @@ from stickslip.analyses.fit_parameters import FitParameter
 from stickslip.analyses.nonlinear_modes import nonlinear_modes
 from stickslip.analyses.optimal_damper import optimal_damper
 from stickslip.analyses.pattern_store import Row
-from stickslip.analyses.run import Run, refusals
-from stickslip.analyses.side_by_side import processors
+from stickslip.analyses.run import Progress, Run, refusals
+from stickslip.analyses.side_by_side import in_turn
 from stickslip.analyses.stores import Sample, SampleStore
 from stickslip.disk.bladed_disk import BladedDisk
 from stickslip.errors import ModelError
@@ -55,11 +56,11 @@ def computed(work: Samples) -> tuple[str, list[tuple[int, Sample]]]:
     return _core.__version__, [(number, sampled(work, values)) for number, values in pairs]
 
 
-def sampled(work: Samples, values: Float) -> Sample:
+def sampled(work: Samples, values: Float, progress: Progress = None) -> Sample:
     """Compute the quantity for one sample of the parameters; what fails has a reason."""
     try:
         model, settings, group = _changed(work, values)
-        return _QUANTITIES[type(work.quantity)](work.quantity, model, settings, group)
+        return _QUANTITIES[type(work.quantity)](work.quantity, model, settings, group, progress)
     except ModelError as error:
         return _failed(len(work.quantity.numbers), str(error))
 
@@ -85,12 +86,18 @@ def _changed(work: Samples, values: Float) -> tuple[Model, HarmonicSettings, lis
 
 
 def _highest_peak(
-    quantity: HighestPeak, model: Model, settings: HarmonicSettings, group: list[str]
+    quantity: HighestPeak,
+    model: Model,
+    settings: HarmonicSettings,
+    group: list[str],
+    progress: Progress,
 ) -> Sample:
     keys = PeakSettings.of(**settings.part(HarmonicSettings), measure=quantity.measure)
     columns = [columns_of(group, model).tolist()]
     with refusals(model):
-        found = _core.summits(model.problem, columns, quantity.measure, quantity.omega, keys)
+        found = _core.summits(
+            model.problem, columns, quantity.measure, quantity.omega, keys, progress=progress
+        )
     row = Row(*found[0])
     status = Status.from_code(row.status)
     if not status.solved:
@@ -101,7 +108,11 @@ def _highest_peak(
 
 
 def _optimum(
-    quantity: Optimum, model: Model, settings: HarmonicSettings, group: list[str]
+    quantity: Optimum,
+    model: Model,
+    settings: HarmonicSettings,
+    group: list[str],
+    progress: Progress,
 ) -> Sample:
     found = optimal_damper(
         model,
@@ -110,6 +121,7 @@ def _optimum(
         bounds=quantity.bounds,
         omega=quantity.omega,
         measure=quantity.measure,
+        progress=progress,
         **settings.part(HarmonicSettings),
     )
     if found.at_bound:
@@ -118,12 +130,17 @@ def _optimum(
 
 
 def _backbone(
-    quantity: Backbone, model: Model, settings: HarmonicSettings, group: list[str]
+    quantity: Backbone,
+    model: Model,
+    settings: HarmonicSettings,
+    group: list[str],
+    progress: Progress,
 ) -> Sample:
     found = nonlinear_modes(
         model,
         amplitude=list(quantity.amplitude),
         mode=quantity.mode,
+        progress=progress,
         **settings.part(HarmonicSettings),
     )
     values = (*found.omega.tolist(), *found.damping_ratio.tolist())
@@ -194,32 +211,21 @@ class SampleRun:
 
         if client is not None and missing:
             return compute_on(client, computed, work, run, deliver)
-        return _compute_here(work, threads or processors(), run, deliver)
+        return _compute_here(work, threads, run, deliver)
 
 
 def _compute_here(
-    work: Samples, threads: int, run: Run, deliver: Callable[[int, Sample], None]
+    work: Samples, threads: int | None, run: Run, deliver: Callable[[int, Sample], None]
 ) -> bool:
     """Compute samples in threads; False if Ctrl-C has ended it."""
-    pool = ThreadPoolExecutor(threads)
+    parts = [partial(sampled, work, values) for values in work.parameters]
     try:
-        futures = (pool.submit(sampled, work, values) for values in work.parameters)
-        for number, found in zip(work.numbers, _in_turn(futures, 4 * threads), strict=True):
-            run.heed()
-            deliver(number, found)
+        with closing(in_turn(parts, lambda _: run.heed(), threads=threads)) as samples:
+            for number, found in zip(work.numbers, samples, strict=True):
+                deliver(number, found)
     except KeyboardInterrupt:
         return False
-    finally:
-        pool.shutdown(cancel_futures=True)
     return True
-
-
-def _in_turn(futures: Iterator[Any], ahead: int) -> Iterator[Sample]:
-    """Yield the results of futures in their order, with a few more of them under way."""
-    waiting: list[Any] = list(islice(futures, ahead))
-    while waiting:
-        yield waiting.pop(0).result()
-        waiting += islice(futures, 1)
 
 
 def sample_columns(found: Mapping[int, Sample], count: int, numbers: int) -> Sequence[Any]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 from collections import deque
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, wait
 from itertools import islice
 from threading import Event, local
@@ -30,8 +30,12 @@ _WITHIN = local()
 
 
 def in_turn(
-    parts: Sequence[Callable[[Progress], _Kind]], progress: Progress, *, alone: bool = False
-) -> Iterator[_Kind]:
+    parts: Sequence[Callable[[Progress], _Kind]],
+    progress: Progress,
+    *,
+    alone: bool = False,
+    threads: int | None = None,
+) -> Generator[_Kind, None, None]:
     """Yield what parts of a work give, in their order; `alone`, one after the other in this thread.
 
     Each part gets the progress that it has to tell; Ctrl-C, and what `progress` raises to end the
@@ -40,7 +44,7 @@ def in_turn(
     what the part raises that was not.
     """
     count = len(parts)
-    threads = at_once(count, alone=alone)
+    threads = at_once(count, alone=alone, threads=threads)
     if threads <= 1:
         for number, part in enumerate(parts):
             yield part(share(progress, number / count, (number + 1) / count))
@@ -79,9 +83,10 @@ def in_turn(
         pool.shutdown(cancel_futures=True)
 
 
-def at_once(count: int, *, alone: bool = False) -> int:
+def at_once(count: int, *, alone: bool = False, threads: int | None = None) -> int:
     """Return how many of so many parts `in_turn` works on at the same time."""
-    return 1 if alone or getattr(_WITHIN, "part", False) else min(processors(), count)
+    alone = alone or getattr(_WITHIN, "part", False)
+    return 1 if alone else min(threads or processors(), count)
 
 
 def has_own_laws(model: Model) -> bool:
