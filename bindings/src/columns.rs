@@ -33,6 +33,7 @@ impl<'py> Columns<'py> {
             ("linear_solve", profile.linear_solve),
             ("recovery", profile.recovery),
             ("estimate", profile.estimate),
+            ("stability", profile.stability),
             ("total", profile.total),
         ]
         .map(|(stage, time)| (stage, time.as_secs_f64()));

@@ -15,7 +15,9 @@ pub struct Profile {
     pub recovery: Duration,
     /// Their error estimates.
     pub estimate: Duration,
-    /// Everything, from the first to the last point.
+    /// Stability of its motions.
+    pub stability: Duration,
+    /// Everything, from the first to the last point and their stability.
     pub total: Duration,
     /// What evaluations and factorisations take, as reckoned \[ns\]: the same on every machine.
     pub work: f64,
@@ -52,6 +54,7 @@ impl Profile {
         self.add(other);
         self.recovery += other.recovery;
         self.estimate += other.estimate;
+        self.stability += other.stability;
         self.updates += other.updates;
         self.restarts += other.restarts;
         self.homotopies += other.homotopies;

@@ -9,6 +9,7 @@ use crate::model::Model;
 use crate::parallel::in_parts;
 use crate::Error;
 use std::sync::Arc;
+use std::time::Instant;
 
 /// Change of a multiplier over the relative error of the motion: measured, 5 to 20, …
 const SENSITIVITY: f64 = 30.0;
@@ -43,6 +44,7 @@ pub fn decide_stability(
         Residual::FromRest => with_history(model)?,
         Residual::Centred | Residual::Value(_) => None,
     };
+    let start = Instant::now();
     let map = PeriodMap::new(history.as_ref().unwrap_or(model))?.assuming(residual);
     let points = &solution.points;
     let found = in_parts(points.len(), progress, |index, progress| {
@@ -58,6 +60,9 @@ pub fn decide_stability(
         let stable = finer.map_or(clear, |finer| decided(&found, &along(&map, &finer)?));
         progress(0.0).then_some(stable)
     });
+    let taken = start.elapsed();
+    solution.profile.stability += taken;
+    solution.profile.total += taken;
     solution.interrupted |= !progress(1.0);
     for (point, stable) in solution.points.iter_mut().zip(found) {
         if let Some(stable) = stable {

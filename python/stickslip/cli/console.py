@@ -28,6 +28,7 @@ _STAGES = {
     "linear_solve": "linear solve",
     "recovery": "recovery",
     "estimate": "error estimate",
+    "stability": "stability",
 }
 _PLAIN_WIDTH = 10_000
 _PATIENCE = 0.5
