@@ -216,6 +216,17 @@ mod tests {
         assert!(slipping > 5.0 * stuck, "{slipping} {stuck}");
     }
 
+    /// So is slip that has ended before the period that repeats.
+    #[test]
+    fn laps_are_paid_for() {
+        let law = Coulomb::new(2, 0.4, 80.0, Some(100.0), Closure::Preload(10.0)).unwrap();
+        let of = |solved: usize| {
+            let load = SlipLoad { solved, ..SlipLoad::default() };
+            of_law(&law, 31, &load, false)
+        };
+        assert!(of(100) > 10.0 * of(0));
+    }
+
     /// A search is on the account of the point, and hears what is left of it.
     #[test]
     fn searches_for_orbits_are_paid_for() {

@@ -43,8 +43,10 @@ pub struct SlipLoad {
     pub repeated: Option<Repeated>,
     /// Rounds of a march until its state has repeated.
     pub rounds: usize,
-    /// Panels on which slip in two directions was solved for.
+    /// Panels of slip in two directions in the period that repeats.
     pub panels: usize,
+    /// Panels that were solved for until then.
+    pub solved: usize,
 }
 
 impl SlipLoad {
@@ -61,7 +63,7 @@ impl SlipLoad {
             self.tangent.resize(size * size, 0.0);
         }
         self.active = false;
-        (self.rounds, self.panels) = (0, 0);
+        (self.rounds, self.panels, self.solved) = (0, 0, 0);
     }
 
     /// Gives a tangent of zeros its room.

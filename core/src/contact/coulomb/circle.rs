@@ -7,6 +7,7 @@
 use super::drive::Drive;
 use super::grid::Grid;
 use super::slip::differentiated;
+use super::vectors::{cross, dot, less, solve};
 
 /// Excess over the squared radius, relative to it, that is none.
 const OUTSIDE: f64 = 1e-13;
@@ -30,32 +31,6 @@ struct Point {
 struct Circle {
     centre: [f64; 2],
     support: Vec<Point>,
-}
-
-fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[0] + a[1] * b[1]
-}
-
-fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[1] - a[1] * b[0]
-}
-
-fn less(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
-    [a[0] - b[0], a[1] - b[1]]
-}
-
-/// Solves two equations; zero where they are singular.
-fn solve(rows: [[f64; 2]; 2], right: [f64; 2]) -> [f64; 2] {
-    let determinant = cross(rows[0], rows[1]);
-    let solution = [
-        (right[0] * rows[1][1] - right[1] * rows[0][1]) / determinant,
-        (rows[0][0] * right[1] - rows[1][0] * right[0]) / determinant,
-    ];
-    if solution.iter().all(|x| x.is_finite()) {
-        solution
-    } else {
-        [0.0; 2]
-    }
 }
 
 impl Point {
@@ -108,7 +83,7 @@ impl Circle {
             [_, _] => [0, 1].map(|i| 0.5 * (at(0)[i] + at(1)[i])),
             _ => {
                 let (a, b) = (less(at(1), at(0)), less(at(2), at(0)));
-                let to = solve([a, b], [0.5 * dot(a, a), 0.5 * dot(b, b)]);
+                let to = solve([a, b], [0.5 * dot(a, a), 0.5 * dot(b, b)]).unwrap_or_default();
                 [at(0)[0] + to[0], at(0)[1] + to[1]]
             }
         };
@@ -182,7 +157,7 @@ impl Circle {
                 self.centre = self.support[0].jet[0];
                 return;
             }
-            let by = solve(self.equations(), self.residual().map(|x| -x));
+            let by = solve(self.equations(), self.residual().map(|x| -x)).unwrap_or_default();
             self.centre = [centre[0] + by[0], centre[1] + by[1]];
             if dot(by, by) <= 1e-28 * self.squared() {
                 return;
@@ -258,7 +233,7 @@ impl Circle {
                     2 => [by(0) - by(1), -cross(moved(0), from(1)) - cross(from(0), moved(1))],
                     _ => [by(0) - by(1), by(0) - by(2)],
                 };
-                let change = solve(rows, right);
+                let change = solve(rows, right).unwrap_or_default();
                 out[i * slots + k] = change[0];
                 out[width + i * slots + k] = change[1];
             }

@@ -52,6 +52,8 @@ pub(super) struct Cycle {
     pub(super) start_rate: Option<Vec<f64>>,
     /// Whether slip in the plane was too sudden to be followed: its force is not known.
     pub(super) unresolved: bool,
+    /// Panels solved for until it was found.
+    pub(super) solved: usize,
 }
 
 /// Integrals of the slip load over the period, times 2 over its length, and their derivatives.
@@ -69,7 +71,7 @@ pub(super) struct Response {
 impl Cycle {
     /// A cycle without a past, differentiated in so many numbers.
     pub(super) fn new(stretches: Vec<Stretch>, columns: usize) -> Self {
-        Self { stretches, columns, start_rate: None, unresolved: false }
+        Self { stretches, columns, start_rate: None, unresolved: false, solved: 0 }
     }
 
     fn has(&self, of: impl Fn(&State) -> bool) -> bool {

@@ -111,12 +111,11 @@ impl<'a> Drive<'a> {
         &self.pull[direction * slots..(direction + 1) * slots]
     }
 
-    /// K and its slope at an angle, and `N₀ + k_n v` with its slope.
-    pub(super) fn at(&self, theta: f64) -> ([[f64; 2]; 2], [f64; 2]) {
+    /// Both directions of K at an angle, and `N₀ + k_n v`, with their first two derivatives.
+    pub(super) fn jets(&self, theta: f64) -> [[f64; 3]; 3] {
         let harmonics = self.harmonics();
-        let front = |[value, slope, _]: [f64; 3]| [value, slope];
         let at_rest = [self.at_rest, 0.0, 0.0];
-        let [x, y, pressing] = match (self.directions, &self.pressing) {
+        match (self.directions, &self.pressing) {
             (2, Some(pressing)) => {
                 harmonics.jets([self.pull(0), self.pull(1), &pressing.series], theta)
             }
@@ -129,8 +128,13 @@ impl<'a> Drive<'a> {
                 [x, [0.0; 3], pressing]
             }
             (_, None) => [harmonics.jet(self.pull(0), theta), [0.0; 3], at_rest],
-        };
-        ([front(x), front(y)], front(pressing))
+        }
+    }
+
+    /// K and its slope at an angle, and `N₀ + k_n v` with its slope.
+    pub(super) fn at(&self, theta: f64) -> ([[f64; 2]; 2], [f64; 2]) {
+        let [x, y, pressing] = self.jets(theta).map(|[value, slope, _]| [value, slope]);
+        ([x, y], pressing)
     }
 
     /// Where the first direction of K is least, and where it is largest.

@@ -3,6 +3,7 @@
 mod circle;
 mod collocation;
 mod constant;
+mod corner;
 mod cycle;
 mod drive;
 mod dual;
@@ -20,5 +21,6 @@ mod slip_ends;
 mod step;
 mod sticking;
 mod variation;
+mod vectors;
 
 pub use law::{Closure, Coulomb};

@@ -50,6 +50,7 @@ pub(super) struct Panel {
 impl Panel {
     /// The panel from an angle on; `None` where Newton's method fails.
     pub(super) fn solve(plane: &Plane<'_>, start: f64, length: f64, angle: f64) -> Option<Self> {
+        plane.solved.set(plane.solved.get() + 1);
         Arch::new().dispatch(Collocating { plane, start, length, angle })
     }
 
@@ -220,6 +221,11 @@ impl Panel {
     #[inline(always)]
     pub(super) fn weights(&self) -> Lanes {
         Collocation::get().weight.map(|weight| self.length * weight)
+    }
+
+    /// `∫ λ`, the way of the slider.
+    pub(super) fn way(&self) -> f64 {
+        self.weights().iter().zip(&self.slip_rate).map(|(weight, rate)| weight * rate).sum()
     }
 
     /// `∫ M λ e_i²`, the work of the traction times the stiffness, of both directions.

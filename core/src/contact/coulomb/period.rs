@@ -4,15 +4,18 @@
 //! never takes two sliders farther apart. So a motion that makes the contact slip in every period
 //! has one periodic cycle, whatever the start: it is found by Newton's method on the slider position
 //! after a lap, with the lap's own derivative. A contact that comes to stick for good keeps what its
-//! past has left, and is marched from an assumed start. Opening forgets all history.
+//! past has left, and is marched from an assumed start, as far as pushes do not lead to a crossing
+//! ([`super::corner`]). Opening forgets all history.
 
 use super::circle::centre;
+use super::corner::rest;
 use super::cycle::{Cycle, State, Stretch};
 use super::drive::{Closed, Drive};
 use super::grid::Grid;
 use super::panel::{RESOLVED, ROUGHLY};
 use super::plane::{March, Slider};
 use super::slip::Plane;
+use super::vectors::{less, size};
 use crate::contact::{Coulomb, Residual};
 
 /// Laps of the first, coarse march.
@@ -30,7 +33,7 @@ const NEWTON_LAPS: usize = 12;
 /// Determinant of `1 − P`, with the derivative P of a lap in its start, below which the slip of the lap
 /// may be the last: a single push leaves the slider free to lie anywhere along a circle.
 const LEAST: f64 = 2e-3;
-/// Laps after which slip is taken to recur.
+/// Laps after which it is looked where pushes in turn lead.
 const PUSHES: usize = 3;
 /// Laps after which a march is taken as it is.
 const MOST_LAPS: usize = 200;
@@ -177,20 +180,28 @@ impl Period<'_> {
             let mut slider = march.begin(position);
             march.confine(theta, &mut slider, NEARLY_WITHIN);
             march.follow(theta, end, &mut slider, false);
-            if !march.slipped || march.unresolved {
+            if march.way <= EXACT * plane.scale || march.unresolved {
                 return None;
             }
             let (after, width) = (slider.position.map(|s| self.mirror() * s), march.width());
             slider.rate.iter_mut().for_each(|rate| *rate *= self.mirror());
-            let residual = [after[0] - position[0], after[1] - position[1]];
+            let residual = less(after, position);
             let (inverse, determinant) = fixed_point(&slider.rate, width);
+            let alone = self.mirror() > 0.0 && march.pushes().len() < 2;
+            let least = if alone { least.max(LEAST) } else { least };
             if determinant.is_nan() || determinant <= least {
                 return None;
             }
-            let by = inverse.map(|row| row[0] * residual[0] + row[1] * residual[1]);
-            let size = by[0].hypot(by[1]).max(residual[0].hypot(residual[1]));
+            // What is left of circles that all but touch is rounding.
+            let rests = lap > NEWTON_LAPS && size(residual) <= PERIODIC * plane.scale;
+            let by = if rests {
+                [0.0; 2]
+            } else {
+                inverse.map(|row| row[0] * residual[0] + row[1] * residual[1])
+            };
+            let step = size(by).max(size(residual));
             let carried = last && (march.coefficients || !self.rates);
-            let settled = size <= EXACT * plane.scale || before <= NEARLY * plane.scale;
+            let settled = step <= EXACT * plane.scale || before <= NEARLY * plane.scale;
             if carried && (settled || lap + 1 == MOST_LAPS) {
                 march.correct(by);
                 let start = self.rates.then(|| start_rate(&slider, inverse, width));
@@ -199,13 +210,13 @@ impl Period<'_> {
             // What is left after this step, which the lap then shrinks.
             let slopes = [0, 1].map(|i| slider.rate[i * width + width - 2..][..2].to_vec());
             let shrinks = slopes.iter().flatten().fold(0.0_f64, |most, p| most.max(p.abs()));
-            let left = 10.0 * size * size / plane.scale * shrinks.min(1.0);
+            let left = 10.0 * step * step / plane.scale * shrinks.min(1.0);
             last = left <= EXACT * plane.scale || lap + 2 == MOST_LAPS;
-            before = size;
+            before = step;
             hints = march.hints(if last { RESOLVED } else { ROUGHLY });
             let newton = lap < NEWTON_LAPS && by.iter().all(|by| by.is_finite());
-            let step = if newton { by } else { residual };
-            position = [position[0] + step[0], position[1] + step[1]];
+            let [x, y] = if newton { by } else { residual };
+            position = [position[0] + x, position[1] + y];
         }
         None
     }
@@ -223,22 +234,60 @@ impl Period<'_> {
             first.follow(0.0, span, &mut slider, false);
             slider.position = slider.position.map(|s| self.mirror() * s);
             slider.rate.iter_mut().for_each(|rate| *rate *= self.mirror());
-            let moved = (slider.position[0] - before[0]).hypot(slider.position[1] - before[1]);
-            if !first.slipped || first.unresolved || moved <= PERIODIC * plane.scale {
+            let moved = size(less(slider.position, before));
+            if !first.slipped || first.unresolved {
                 break;
             }
-            if lap == PUSHES || lap + 1 == MOST_LAPS {
-                let least = if lap == PUSHES { LEAST } else { f64::MIN_POSITIVE };
-                let start = (0.0, slider.position);
-                if let Some(cycle) = self.recurrent(plane, grid, start, least) {
+            // Slip that recurs hardly changes the slider, either.
+            let rests = moved <= PERIODIC * plane.scale;
+            if rests || lap % PUSHES == PUSHES - 1 || lap + 1 == MOST_LAPS {
+                if let Some(cycle) = self.in_turn(plane, grid, &first, slider.position) {
                     return cycle;
                 }
+            }
+            if rests {
+                break;
             }
             if lap + 1 < MOST_LAPS {
                 first = March::new(self.drive, plane, grid, true);
             }
         }
         first.into_cycle((!rate.is_empty()).then_some(rate))
+    }
+
+    /// What becomes of a slider that a lap has pushed in turn, as far as that is known.
+    fn in_turn(
+        &self,
+        plane: &Plane<'_>,
+        grid: &Grid,
+        lap: &March<'_>,
+        slider: [f64; 2],
+    ) -> Option<Cycle> {
+        let span = self.drive.harmonics().span();
+        let mut angles = lap.pushes();
+        if self.mirror() < 0.0 {
+            angles.extend(lap.pushes().iter().map(|theta| theta + span));
+        }
+        let rest = rest(self.drive, &angles, slider, plane.scale)?;
+        let recurrent = |start| self.recurrent(plane, grid, (0.0, start), f64::MIN_POSITIVE);
+        if !rest.crosses {
+            if let Some(cycle) = recurrent(rest.slider) {
+                return Some(cycle);
+            }
+        }
+        let mut march = March::new(self.drive, plane, grid, false);
+        let mut held = march.begin(rest.slider);
+        march.follow(0.0, span, &mut held, false);
+        let after = held.position.map(|s| self.mirror() * s);
+        let stays = size(less(after, rest.slider)) <= NEARLY * plane.scale && !march.unresolved;
+        if !stays {
+            // Others push there.
+            return if rest.crosses { recurrent(after) } else { None };
+        }
+        let state = State::Stuck { slider: rest.slider, rate: rest.rate? };
+        let stretch = Stretch { start: 0.0, end: span, state };
+        let cycle = Cycle::new(vec![stretch], self.drive.columns());
+        Some(Cycle { solved: plane.solved.get(), ..cycle })
     }
 
     /// The assumed slider position of a contact that never slips, and its derivative.

@@ -41,6 +41,8 @@ pub(super) struct March<'a> {
     pub(super) coefficients: bool,
     pub(super) stretches: Vec<Stretch>,
     pub(super) slipped: bool,
+    /// Way of the slider in slip.
+    pub(super) way: f64,
     /// Whether the panels were spent before the end.
     pub(super) unresolved: bool,
     /// What counts as resolved.
@@ -63,6 +65,7 @@ impl<'a> March<'a> {
             coefficients,
             stretches: Vec::new(),
             slipped: false,
+            way: 0.0,
             unresolved: false,
             resolved: RESOLVED,
             hints: Vec::new(),
@@ -79,6 +82,16 @@ impl<'a> March<'a> {
         panels.collect()
     }
 
+    /// Angles at which slip has ended.
+    pub(super) fn pushes(&self) -> Vec<f64> {
+        let slips = |stretch: &&Stretch| matches!(stretch.state, State::Turning(_));
+        let ends = |n: &usize| {
+            let next = self.stretches.get(n + 1);
+            slips(&&self.stretches[*n]) && !next.as_ref().is_some_and(slips)
+        };
+        (0..self.stretches.len()).filter(ends).map(|n| self.stretches[n].end).collect()
+    }
+
     /// Length of a panel to begin with.
     fn first_length(&self, theta: f64) -> f64 {
         let after = self.hints.partition_point(|[start, _]| *start <= theta + 1e-2);
@@ -88,8 +101,9 @@ impl<'a> March<'a> {
 
     /// The cycle that has been marched; the derivative of its start, if it depends on that.
     pub(super) fn into_cycle(self, start_rate: Option<Vec<f64>>) -> Cycle {
+        let (columns, solved) = (self.drive.columns() + 2, self.plane.solved.get());
         let (stretches, unresolved) = (self.stretches, self.unresolved);
-        Cycle { stretches, start_rate, columns: self.drive.columns() + 2, unresolved }
+        Cycle { stretches, start_rate, columns, unresolved, solved }
     }
 
     /// Moves the start of the march, and all that depends on it, by a little.
@@ -306,6 +320,7 @@ impl<'a> March<'a> {
             }
             panel.carry(self.drive, self.coefficients, &mut rate);
             self.slipped = true;
+            self.way += panel.way();
             let from = theta;
             theta = if !ended && length == left { end } else { panel.end() };
             angle = panel.last_angle;

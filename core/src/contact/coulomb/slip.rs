@@ -11,6 +11,7 @@
 use super::collocation::{Lanes, NODES};
 use super::drive::Drive;
 use crate::fourier::{cos_sin, doubled, rotate};
+use std::cell::Cell;
 
 /// The series that decide slip, and their values at angles.
 pub(super) struct Plane<'a> {
@@ -24,6 +25,8 @@ pub(super) struct Plane<'a> {
     /// Sizes of the limit, which errors are relative to, and of K.
     pub(super) scale: f64,
     pub(super) reach: f64,
+    /// Panels solved for, of all laps.
+    pub(super) solved: Cell<usize>,
 }
 
 /// K', M and M' at the nodes of a panel.
@@ -58,6 +61,7 @@ impl<'a> Plane<'a> {
             longest: (6.0 / harmonics.highest() as f64).min(1.0),
             scale: swing,
             reach: drive.pull.iter().map(|k| k.abs()).sum(),
+            solved: Cell::new(0),
         }
     }
 
