@@ -191,7 +191,7 @@ fn check(
 
 #[test]
 fn contacts_in_space_with_few_harmonics() {
-    let (seen, left_out) = check(1907, 400, in_space);
+    let (seen, left_out) = check(1907, 448, in_space);
     assert!([Doing::Open, Doing::Sticks, Doing::Slips].iter().all(|doing| seen.contains(doing)));
     assert!(left_out <= 2, "{left_out}");
 }
