@@ -38,32 +38,48 @@ impl Transition<'_> {
     ) -> Option<Vec<f64>> {
         let roots = self.roots();
         let mut own = difference.to_vec();
-        // By how long the difference lags behind, and by how much later the last event was.
-        let (mut lag, mut last) = (0.0, 0.0);
+        // By how long exponentials lag behind the difference, and by how much later the last event was.
+        let (mut lag, mut last) = (0.0_f64, 0.0);
         let mut before = self.rates(&phases.first()?.regime, &roots);
         let leads = self.leads(phases, &self.simple_changes(phases));
+        let mut nothing = 0.0;
         for (number, phase) in phases.iter().enumerate() {
-            lag += phase.duration;
-            if let Some(lead) = leads[number] {
-                lag = self.pass_as_known(&before, [lag, lead], &mut own, known)?;
+            let goes_on = phases.get(number + 1).map(|next| {
+                let end = phase.crossing.as_ref();
+                let end = end.filter(|end| end.after.points == next.regime.points)?;
+                Some((next, end, self.coordinates(&end.state)))
+            });
+            if let Some(own) = &goes_on {
+                nothing = ROUNDING * norm(&own.as_ref()?.2);
             }
-            let Some(next) = phases.get(number + 1) else {
-                before.lag(lag, &mut own, 0.0);
+            match leads[number] {
+                // A series leads there sooner than back to the last exponential, and from the next one.
+                Some(lead) if phase.duration <= lag.abs() + lead.abs() => {
+                    before.lag(phase.duration, &mut own, nothing);
+                    lag = -lead;
+                }
+                Some(lead) => {
+                    before.lag(-lag, &mut own, nothing);
+                    let duration = lag + phase.duration;
+                    lag = self.pass_as_known(&before, [duration, lead], &mut own, known)?;
+                    before.lag(lag, &mut own, nothing);
+                }
+                None => {
+                    before.lag(phase.duration, &mut own, nothing);
+                    lag += phase.duration;
+                }
+            }
+            let Some(goes_on) = goes_on else {
                 // Behind the end nothing has happened yet.
                 return (last <= phase.duration).then_some(own);
             };
-            let end = phase.crossing.as_ref();
-            let end = end.filter(|end| end.after.points == next.regime.points)?;
-            let motion = self.coordinates(&end.state);
-            let nothing = ROUNDING * norm(&motion);
-            before.lag(lag, &mut own, nothing);
+            let (next, end, motion) = goes_on?;
             let after = self.rates(&next.regime, &roots);
             let late = self.cross([&before, &after], (phase, end), omega, &motion, &mut own)?;
             if phase.duration + late < last {
                 return None;
             }
             last = late;
-            after.lag(-lag, &mut own, nothing);
             before = after;
         }
         None
