@@ -9,7 +9,7 @@ use crate::solve::{norm, NewtonSettings, System as _};
 
 /// Harmonics of the balance that a cold start comes from: at least, at most, and units of the fastest rate
 /// per period for each. Where passes along the orbit are long, more harmonics save some of them.
-const START_HARMONICS: [usize; 2] = [9, 25];
+const START_HARMONICS: [usize; 2] = [9, 21];
 const PER_HARMONIC: f64 = 100.0;
 /// Closing error, relative to the motion, of a start that needs no better one.
 const NEAR: f64 = 1e-4;
