@@ -136,9 +136,32 @@ impl<'a> Transition<'a> {
         loops: &mut LoopDisturbance,
         known: &mut Propagators,
     ) -> Mat<f64> {
-        let own = self.start(phases, held, force);
+        let mut own = self.start(phases, held, force);
+        if loops.columns == 0 {
+            // Of what contacts remember that slip nothing comes.
+            let felt: Vec<usize> =
+                (0..own.ncols()).filter(|&j| own.col(j).norm_max() > 0.0).collect();
+            let mut total = Mat::from_fn(own.nrows(), felt.len(), |i, j| own[(i, felt[j])]);
+            self.lead(phases, &mut total, loops, known);
+            for (j, at) in felt.into_iter().enumerate() {
+                own.col_mut(at).copy_from(total.col(j));
+            }
+            return own;
+        }
         let mut total = Mat::zeros(own.nrows(), own.ncols() + loops.columns);
         total.get_mut(.., ..own.ncols()).copy_from(&own);
+        self.lead(phases, &mut total, loops, known);
+        total
+    }
+
+    /// Takes disturbances along phases.
+    fn lead(
+        &self,
+        phases: &[LinearPhase],
+        total: &mut Mat<f64>,
+        loops: &mut LoopDisturbance,
+        known: &mut Propagators,
+    ) {
         // By how long the disturbances lag behind.
         let mut lag = 0.0;
         let changes = self.simple_changes(phases);
@@ -146,31 +169,30 @@ impl<'a> Transition<'a> {
         for (number, phase) in phases.iter().enumerate() {
             let change = phases.get(number + 1).zip(changes[number].as_ref());
             if let Some((series, length)) = &phase.slide {
-                self.slide(&phase.regime, series, *length, &mut total, loops);
+                self.slide(&phase.regime, series, *length, total, loops);
             } else if let Some(lead) = leads[number] {
                 let reach = if change.is_some() { Reach::LAGGING } else { Reach::CAUGHT_UP };
                 let duration = lag + phase.duration;
-                lag = self.advance(&phase.regime, [duration, lead], reach, &mut total, known);
+                lag = self.advance(&phase.regime, [duration, lead], reach, total, known);
             } else {
                 lag += phase.duration;
             }
             if lag != 0.0 {
                 if let Some((next, changed)) = change {
-                    self.pass_late([phase, next], changed, lag, &mut total, known);
+                    self.pass_late([phase, next], changed, lag, total, known);
                     continue;
                 }
-                self.catch_up(&phase.regime, lag, &mut total);
+                self.catch_up(&phase.regime, lag, total);
                 lag = 0.0;
             }
             if let Some(onset) = &phase.onset {
-                self.jump(onset, &mut total);
+                self.jump(onset, total);
             }
             for (number, turn) in &phase.turns {
                 let point = self.system.microslips()[*number].point;
-                loops.turn(*number, *turn, || self.displacements(point, &total));
+                loops.turn(*number, *turn, || self.displacements(point, total));
             }
         }
-        total
     }
 
     /// Disturbances of the displacement of a point.

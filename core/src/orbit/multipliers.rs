@@ -85,6 +85,10 @@ impl Shooting<'_> {
     /// nothing answers to some rigid-body motions.
     pub(super) fn without_neutral(&self, matrix: &Mat<f64>, slipped: &[bool]) -> (Mat<f64>, usize) {
         let conserved = self.conserved(matrix, slipped);
+        let rigid = self.coordinates.rigid(slipped);
+        if conserved.is_empty() && rigid.is_empty() {
+            return (matrix.clone(), 0);
+        }
         let size = matrix.nrows();
         let mut change = Mat::<f64>::identity(size, size);
         for (target, row) in &conserved {
@@ -97,7 +101,6 @@ impl Shooting<'_> {
         let kept: Vec<usize> =
             (0..size).filter(|i| conserved.iter().all(|(target, _)| target != i)).collect();
         let rest = Mat::from_fn(kept.len(), kept.len(), |i, j| matrix[(kept[j], kept[i])]);
-        let rigid = self.coordinates.rigid(slipped);
         if rigid.is_empty() {
             return (rest, conserved.len());
         }
