@@ -103,7 +103,8 @@ impl Transition<'_> {
         let roots = self.roots();
         let [old, new] = [before, after].map(|regime| self.rates(regime, &roots));
         let (size, modes) = (total.nrows(), self.weight.len());
-        let count = nodes_of_waves(0.5 * lag.abs() * self.system.rate(0.0));
+        let error = known.error();
+        let count = nodes_of_waves(0.5 * lag.abs() * self.system.rate(0.0), error);
         let rule = known.quadrature.rule(count);
         let times: Vec<f64> = rule.iter().map(|(share, _)| share * lag).collect();
         let jump = phase.onset.as_ref().and_then(|onset| self.jump_of(onset));
@@ -124,8 +125,8 @@ impl Transition<'_> {
             let (mut gain, mut form) = (vec![0.0; size], vec![0.0; size]);
             strains.iter().for_each(|(at, rate)| gain[*at] = *rate);
             form[modes..2 * modes].copy_from_slice(self.system.contact_shape(*point));
-            new.write_series(gain, &back, false, (&mut gains, place));
-            old.write_series(form, &times, true, (&mut forms, place));
+            new.write_series(gain, &back, false, (&mut gains, place), error);
+            old.write_series(form, &times, true, (&mut forms, place), error);
             for (k, (_, weight)) in rule.iter().enumerate() {
                 gains.col_as_slice_mut(place + k).iter_mut().for_each(|x| *x *= lag * weight);
             }
@@ -139,9 +140,9 @@ impl Transition<'_> {
                     let own = gains.col_as_slice_mut(columns - 1);
                     own.iter_mut().for_each(|x| *x *= factor);
                 }
-                None => new.write_series(gain, &[-lag], false, (&mut gains, columns - 1)),
+                None => new.write_series(gain, &[-lag], false, (&mut gains, columns - 1), error),
             }
-            old.write_series(form, &[lag], true, (&mut forms, columns - 1));
+            old.write_series(form, &[lag], true, (&mut forms, columns - 1), error);
         }
         let mut shares = Mat::<f64>::zeros(columns, total.ncols());
         let forms = forms.transpose();
@@ -272,6 +273,11 @@ mod tests {
                     (0..matrix.nrows()).filter(|i| matrix.row(*i).norm_max() == 0.0).count()
                 };
                 assert_eq!(zeros(&found), zeros(&by_steps));
+                known.rough = true;
+                let rough = own.along(&phases, &held, &force, none, &mut known);
+                known.rough = false;
+                let error = (&rough - &by_steps).norm_max() / by_steps.norm_max();
+                assert!(error < 1e-8, "{coupled} {shift} {error:e}");
                 let fresh = known.count() - before;
                 assert!(fresh < if before == 0 { phases.len() } else { phases.len() / 4 });
             }

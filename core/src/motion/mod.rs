@@ -58,7 +58,7 @@ pub(crate) use pace::FASTEST_EXACT;
 pub use power_series::PowerSeries;
 pub(crate) use power_series::Values;
 pub(crate) use propagator::Propagators;
-pub(crate) use quadrature::{nodes_of_waves, Quadrature};
+pub(crate) use quadrature::{nodes_of_waves, Quadrature, ROUNDING};
 pub use state::State;
 pub use transient::transient;
 pub(crate) use transition::Transition;

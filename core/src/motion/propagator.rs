@@ -19,6 +19,8 @@ const MOST: usize = 1 << 9;
 const ALIKE: f64 = 2.0;
 /// Term of such a series, relative to the states, that is none.
 const ROUNDING: f64 = 1e-18;
+/// The same where a step of Newton's method is all that disturbances are for.
+const ROUGH: f64 = 1e-10;
 /// Modes up to which products of matrices of any size cost the same.
 const FEW: usize = 8;
 /// Columns that such a series takes at a time.
@@ -47,6 +49,8 @@ pub(crate) struct Propagators {
     /// The frequency whose motions have the units of displacements that all exponentials have \[rad/s\].
     pub(super) pace: f64,
     pub(super) quadrature: Quadrature,
+    /// Whether what disturbances lag by need not be exact to rounding.
+    pub(crate) rough: bool,
     /// Room for states: a stretch finds that of the one before in the cache.
     pub(super) spare: Vec<Mat<f64>>,
 }
@@ -254,6 +258,15 @@ impl Propagators {
         let alike = if modes <= FEW { 1.0 } else { ALIKE };
         if !(1.0 / alike..=alike).contains(&ratio) {
             (self.known, self.numbers, self.pace) = (Vec::new(), 0, omega);
+        }
+    }
+
+    /// Error of series of disturbances that lag.
+    pub(super) fn error(&self) -> f64 {
+        if self.rough {
+            ROUGH
+        } else {
+            ROUNDING
         }
     }
 

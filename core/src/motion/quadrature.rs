@@ -5,8 +5,8 @@ use crate::fourier::gauss_legendre;
 use faer::Mat;
 use std::collections::BTreeMap;
 
-/// Error of the quadrature of a wave, relative to it.
-const ROUNDING: f64 = 1e-18;
+/// Error of the quadrature of a wave, relative to it, that is none.
+pub(crate) const ROUNDING: f64 = 1e-18;
 
 /// Nodes and weights by number of nodes, each computed once.
 #[derive(Debug, Default)]
@@ -43,10 +43,10 @@ impl Quadrature {
     }
 }
 
-/// Nodes over which the quadrature of waves that turn by 4 x has no error but rounding, `x^2m / (2m)!`.
-pub(crate) fn nodes_of_waves(x: f64) -> usize {
+/// Nodes over which the quadrature of waves that turn by 4 x has an error, `x^2m / (2m)!`, up to the one that is given.
+pub(crate) fn nodes_of_waves(x: f64, most: f64) -> usize {
     let (mut count, mut error) = (0, 1.0);
-    while error > ROUNDING {
+    while error > most {
         count += 1;
         error *= x * x / ((2 * count) * (2 * count - 1)) as f64;
     }

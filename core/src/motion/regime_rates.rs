@@ -59,15 +59,17 @@ impl Transition<'_> {
 }
 
 impl Rates<'_> {
-    /// Writes `Σ (A t)ⁿ y / n!` at some times t as columns from a place on, or of the transposed matrix.
+    /// Writes `Σ (A t)ⁿ y / n!` at some times t as columns from a place on, or of the transposed matrix; terms of an
+    /// error, relative to the largest, are none.
     pub(super) fn write_series(
         &self,
         start: Vec<f64>,
         times: &[f64],
         across: bool,
         (out, place): (&mut Mat<f64>, usize),
+        error: f64,
     ) {
-        pulp::Arch::new().dispatch(Series { rates: self, start, times, across, out, place });
+        pulp::Arch::new().dispatch(Series { rates: self, start, times, across, out, place, error });
     }
 
     /// Adds to a difference what the motion `y` changes by over a duration, by itself or under loads of a frequency
@@ -218,6 +220,7 @@ struct Series<'a> {
     across: bool,
     out: &'a mut Mat<f64>,
     place: usize,
+    error: f64,
 }
 
 impl pulp::NullaryFnOnce for Series<'_> {
@@ -225,7 +228,7 @@ impl pulp::NullaryFnOnce for Series<'_> {
 
     #[inline(always)]
     fn call(self) {
-        let Self { rates, start: mut begin, times, across, out, place } = self;
+        let Self { rates, start: mut begin, times, across, out, place, error } = self;
         let longest =
             times.iter().fold(0.0_f64, |most, t| if t.abs() > most.abs() { *t } else { most });
         let steps = rates.of.steps(longest);
@@ -243,7 +246,7 @@ impl pulp::NullaryFnOnce for Series<'_> {
             for order in 1..TERMS {
                 let size = dot(term, term).sqrt();
                 most = most.max(size);
-                if size <= ROUNDING * most {
+                if size <= error * most {
                     break;
                 }
                 for (k, share, power) in &mut shares {

@@ -376,7 +376,10 @@ impl<'a> PeriodicOrbits<'a> {
                 }
             }
             let mut trial = y.clone();
+            // Matrices of its steps need not tell the multipliers.
+            shooting.propagators.rough = true;
             let report = newton(shooting, &mut trial, settings);
+            shooting.propagators.rough = false;
             iterations += report.iterations;
             match report.outcome {
                 Outcome::Converged => return Some((trial, iterations, true)),

@@ -4,7 +4,7 @@ use crate::balance::Point;
 use crate::contact::{PointState, PointSummary, SlipPlane};
 use crate::motion::{
     nodes_of_waves, ContactState, Event, Extremes, FlowEvent, FlowSegment, ModalSystem, Quadrature,
-    Turn, Values,
+    Turn, Values, ROUNDING,
 };
 use crate::solve::dot;
 use faer::linalg::matmul::matmul;
@@ -289,7 +289,7 @@ fn nodes(segment: &FlowSegment<'_>, angle: f64) -> usize {
     if segment.series.is_nonlinear() {
         return NODES + (0.5 * angle).ceil() as usize;
     }
-    nodes_of_waves(0.25 * (segment.length + segment.length.max(angle)))
+    nodes_of_waves(0.25 * (segment.length + segment.length.max(angle)), ROUNDING)
 }
 
 /// The points that slip on a stretch.
