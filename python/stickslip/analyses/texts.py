@@ -161,8 +161,8 @@ TEXTS = {
     "other-minimum": "Another minimum fits about as well, with {parameter!r} at {value:.6g}; "
     "narrow the bounds, or measure more.",
     "misfit-above-noise": "The model does not fit within the noise: the residuals of the {numbers} "
-    "numbers scatter by {scatter:.3g} standard deviations. A better minimum may lie elsewhere: give bounds "
-    "nearer to it, or more starts. Or another law fits better, or the noise is larger than given.",
+    "numbers scatter by {scatter:.3g} standard deviations. A better minimum may lie elsewhere: "
+    "give nearer bounds, or more starts. Or another law fits better, or the noise is larger.",
     "predictions-missing": "{count} of {total} numbers could not be predicted by the best fit and "
     "count as zero; look at the forced response of the fitted model.",
     # uncertainty
