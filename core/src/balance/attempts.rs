@@ -3,7 +3,7 @@
 use super::condensed::{Condensed, Path};
 use super::forced::ForcedBalance;
 use super::limit_load::is_carried_away;
-use super::rough_start::Rough;
+use super::neighbour::Rough;
 use super::settings::{resolving, Method, Resolution};
 use super::solution::{Point, PointStatus};
 use super::unknowns::Unknowns;

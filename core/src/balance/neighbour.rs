@@ -1,4 +1,4 @@
-//! What the error estimate at a point tells of those beside it on a curve.
+//! What a point tells of those beside it on a curve: of their error estimates, and of where to begin.
 //!
 //! A solution that starts from its neighbour takes two Newton steps instead of six, and its estimate should
 //! not take longer. How much the second step of an estimate adds to the first one changes slowly along a
@@ -14,8 +14,18 @@ use crate::contact::Repeated;
 
 /// Points are beside one another up to this distance in frequency, relative to it.
 const NEAR: f64 = 0.02;
-/// Points in a row that the second step at one before them serves.
+/// Points in a row that the second step at one before them serves, and where to begin.
 const SERVED: usize = 7;
+
+/// What fewer harmonics make of an extrapolation.
+pub(super) enum Rough {
+    /// It is as good as theirs, or there is nothing else to begin with.
+    Near,
+    /// It was far from the solution; here is a better one.
+    Found(Unknowns),
+    /// Newton's method did not come to them, or not from the last such extrapolation.
+    Lost,
+}
 
 /// The point at which an estimate was made as a whole last.
 #[derive(Default)]

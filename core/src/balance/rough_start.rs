@@ -8,6 +8,7 @@ use super::attempts::is_bounded;
 use super::condensed::Condensed;
 use super::forced::ForcedBalance;
 use super::modal_work::is_large;
+use super::neighbour::Rough;
 use super::settings::{Method, Resolution};
 use super::solution::Point;
 use super::unknowns::Unknowns;
@@ -32,16 +33,6 @@ const ASIDE: [f64; 6] = [0.02, -0.02, 0.08, -0.08, 0.3, -0.3];
 const STEPS: [f64; 2] = [1e-2, 1e-4];
 /// Points on such ways that are solved at most.
 const MOST_ASIDE: usize = 400;
-
-/// What fewer harmonics make of an extrapolation.
-pub(super) enum Rough {
-    /// It is as good as theirs, or there is nothing else to begin with.
-    Near,
-    /// It was far from the solution; here is a better one.
-    Found(Unknowns),
-    /// Newton's method did not come to them, or not from the last such extrapolation.
-    Lost,
-}
 
 impl ForcedBalance<'_> {
     /// Whether a point with harmonics up to `order` may begin with an exact orbit: there is one motion alone.
