@@ -104,3 +104,40 @@ def test_a_body_that_contacts_alone_hold_begins_from_rest():
         assert frf.converged.all()
         exact = ss.exact_response(frf.model, frf.omega)
         np.testing.assert_allclose(frf.amplitude("x"), exact.amplitude("x"), rtol=1e-6)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("residual", ["centred", 0.5, -0.5])
+def test_orbits_hold_the_residual_of_contacts_in_two_directions(residual) -> None:
+    mass = np.diag([1.116, 0.814, 1.24, 0.481])
+    stiffness = 1e3 * np.array(
+        [
+            [643.0, -448.6, 0.0, 0.0],
+            [-448.6, 1110.5, -639.2, 0.0],
+            [0.0, -639.2, 3098.8, -588.9],
+            [0.0, 0.0, -588.9, 848.8],
+        ]
+    )
+    dofs = ["a", "b", "c", "d"]
+    structure = ss.Structure(mass, stiffness, ss.ModalDamping(0.0126), dofs)
+    holding = ss.Coulomb(
+        ["b", "d"], normal=None, friction=0.451, tangential_stiffness=1.984e5, preload=3.672
+    )
+    # Its stick, slip and flight start no orbit with the residual of few harmonics.
+    lifting = ss.Coulomb(
+        ["a", "d", "c"],
+        normal=(-0.638, -0.305, -0.707),
+        friction=0.533,
+        tangential_stiffness=4.812e6,
+        normal_stiffness=5.743e6,
+        preload=1.658,
+    )
+    model = ss.Model(structure, [holding, lifting], [ss.Force("a", 4.323)])
+    exact = ss.exact_response(model, [331.84], residual=residual)
+    balance = ss.forced_response(model, [331.84], tolerance=1e-5, residual=residual)
+    assert exact.status == balance.status == (ss.Status.CONVERGED,)
+    assert exact.stable == balance.stable
+    for dof in dofs:
+        np.testing.assert_allclose(exact.amplitude(dof), balance.amplitude(dof), rtol=1e-4)
+    traction, other = (one.contact_force(0, 0, 256) for one in (exact, balance))
+    np.testing.assert_allclose(traction, other, atol=1e-3 * np.abs(other).max())

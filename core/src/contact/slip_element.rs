@@ -2,6 +2,8 @@
 //! and how they move on.
 
 use super::point_state::PointState;
+use super::residual::{Held, Residual};
+use crate::fourier::SampleTable;
 use faer::Mat;
 use std::sync::Arc;
 
@@ -76,10 +78,21 @@ pub trait SlipElement: Send + Sync + std::fmt::Debug {
     /// plane are zero.
     fn tangent(&self, points: &[PointState]) -> Mat<f64>;
 
-    /// Displacement at which the force of its first point vanishes, where it has not slipped since the
+    /// Displacements at which the forces of its first points vanish, where it has not slipped since the
     /// static loads were raised \[m\].
-    fn slider_at_rest(&self) -> f64 {
-        0.0
+    fn slider_at_rest(&self) -> [f64; 2] {
+        [0.0; 2]
+    }
+
+    /// The sliders that a periodic motion of given coefficients leaves where they are, as a contact law tells
+    /// them. It is asked of elements that slip in a plane.
+    fn held(
+        &self,
+        _table: &SampleTable,
+        _displacement: &[f64],
+        _residual: Residual,
+    ) -> Vec<Option<Held>> {
+        Vec::new()
     }
 
     /// Slip per relative displacement, `s' = R u'`, while the points are in these states,

@@ -42,6 +42,7 @@ mod transient;
 mod transition;
 
 pub use basin::fates;
+pub(crate) use bodies::Body;
 pub(crate) use classification::is_passive;
 pub use classification::{Classification, ClassificationSettings, Classifier, Reason};
 pub use contact_state::ContactState;

@@ -18,6 +18,7 @@ mod period_map;
 mod periodic;
 mod pieces;
 mod plan;
+mod planar_sliders;
 mod price;
 mod range;
 mod reading;

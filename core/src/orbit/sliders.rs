@@ -6,6 +6,7 @@
 //! those of the assumption; the derivative of the orbit in a position follows from the transition
 //! matrix, with the conserved slip as right-hand side.
 
+use super::planar_sliders::PlanarSliders;
 use super::shooting::Shooting;
 use crate::contact::Residual;
 use crate::motion::{Extremes, FlowEvent, ModalSystem};
@@ -32,7 +33,7 @@ const DIFFERENCE: f64 = 1e-6;
 /// Further looks for an orbit beside one that touches limits.
 const LOOKS: usize = 3;
 
-/// A contact of one point whose slider an orbit leaves where it is; positions are scaled by the spring,
+/// A contact, or one of its directions, whose slider an orbit leaves where it is; positions are scaled by the spring,
 /// in N.
 struct Kept {
     point: usize,
@@ -45,6 +46,8 @@ struct Kept {
     wanted: f64,
     /// Size of the contact's forces.
     scale: f64,
+    /// Whether it is where the motion pushes it in a plane.
+    pushed: bool,
 }
 
 /// What is assumed of the contacts that leave a choice.
@@ -91,7 +94,9 @@ impl Kept {
 
     fn touches(&self) -> bool {
         let room = TOUCHES * self.scale;
-        self.position < self.allowed[0] + room || self.position > self.allowed[1] - room
+        self.pushed
+            || self.position < self.allowed[0] + room
+            || self.position > self.allowed[1] - room
     }
 }
 
@@ -173,8 +178,11 @@ fn inwards(shooting: &Shooting<'_>, y: &[f64], kept: &[Kept]) -> Vec<f64> {
 fn strain(shooting: &Shooting<'_>, point: usize) -> Option<usize> {
     let system = shooting.coordinates.system();
     let first = shooting.coordinates.size() - system.strains();
-    let body = system.bodies().iter().find(|body| body.points.contains(&point));
-    body.map(|body| first + body.strains.start)
+    let mut bodies = system.bodies().iter();
+    bodies.find_map(|body| {
+        let direction = body.remembered.iter().position(|own| *own == point)?;
+        Some(first + body.strains.start + direction)
+    })
 }
 
 /// Change of the orbit that leads the sliders to the assumed positions, to first order.
@@ -263,6 +271,11 @@ fn kept(shooting: &mut Shooting<'_>, assumption: Assumption<'_>, y: &[f64]) -> O
     let system = shooting.coordinates.system();
     let mut state = shooting.state(y);
     let displacement = system.contact_displacement(&state.displacement);
+    let begun = state.force.clone();
+    let position = |spring: f64, point: usize| spring * displacement[point] - begun[point];
+    let moved = |point: usize| -> f64 {
+        assumption.sliders.get(system.components()[point]).copied().unwrap_or(0.0)
+    };
     let (mut found, mut shapes) = (Vec::new(), Vec::new());
     for body in system.bodies() {
         let [point] = body.remembered[..] else { continue };
@@ -276,16 +289,16 @@ fn kept(shooting: &mut Shooting<'_>, assumption: Assumption<'_>, y: &[f64]) -> O
         let pull: Vec<f64> = system.contact_shape(point).iter().map(|b| spring * b).collect();
         let wall = |sign: f64| pull.iter().zip(&slope).map(|(k, m)| k + sign * m).collect();
         shapes.extend([wall(0.0), wall(-1.0), wall(1.0), slope.clone()]);
-        let position = spring * displacement[point] - state.force[point];
-        let moved = assumption.sliders.get(system.components()[point]).unwrap_or(&0.0);
-        let rest = spring * (body.law.slider_at_rest() + moved);
-        found.push((point, root, position, rest));
+        let rest = spring * (body.law.slider_at_rest()[0] + moved(point));
+        found.push((point, root, position(spring, point), rest));
     }
     let mut ranges = vec![[f64::INFINITY, f64::NEG_INFINITY]; shapes.len()];
     let mut extremes = Extremes::default();
+    let mut planar = PlanarSliders::new(system, shooting.period);
     let followed = shooting.follow_period(&mut state, &mut |passage| {
         if let FlowEvent::Segment(segment) = &passage {
             extremes.follow(segment, &shapes, &mut ranges);
+            planar.follow(segment);
         }
     });
     followed.then(|| {
@@ -293,7 +306,24 @@ fn kept(shooting: &mut Shooting<'_>, assumption: Assumption<'_>, y: &[f64]) -> O
         let kept = all.filter_map(|((point, root, position, rest), range)| {
             one(system, assumption.residual, (point, root, position, rest), range)
         });
-        kept.collect()
+        let in_planes =
+            planar.held(assumption.residual, moved).into_iter().map(|(point, body, held)| {
+                let direction = point - body.points.start;
+                let root = body.elastic.root()[(direction, direction)];
+                let (spring, rest) = (root * root, body.law.slider_at_rest()[direction]);
+                let [low, wanted, high] =
+                    [held.range[0], held.position, held.range[1]].map(|w| spring * (w + rest));
+                Kept {
+                    point,
+                    root,
+                    position: position(spring, point),
+                    allowed: [low, high],
+                    wanted,
+                    scale: high - low + system.limit_at_rest(point).abs(),
+                    pushed: held.pushed,
+                }
+            });
+        kept.chain(in_planes).collect()
     })
 }
 
@@ -313,5 +343,5 @@ fn one(
     let closed = limit[0] + at_rest >= 0.0;
     // One that cannot slip at all is a spring.
     let chooses = closed && allowed[0] <= allowed[1] && scale > 0.0 && scale < f64::MAX;
-    chooses.then_some(Kept { point, root, position, allowed, wanted, scale })
+    chooses.then_some(Kept { point, root, position, allowed, wanted, scale, pushed: false })
 }

@@ -12,7 +12,8 @@
 //! Menq 1998).
 
 use crate::contact::slip_element::{Bound, SlipElement, SlipPlane};
-use crate::contact::{ContactLaw, Coulomb, PointState};
+use crate::contact::{ContactLaw, Coulomb, Held, Motion, PointState, Residual};
+use crate::fourier::SampleTable;
 use faer::Mat;
 
 impl Coulomb {
@@ -77,8 +78,17 @@ impl SlipElement for Coulomb {
         })
     }
 
-    fn slider_at_rest(&self) -> f64 {
-        self.slider()[0]
+    fn slider_at_rest(&self) -> [f64; 2] {
+        self.slider()
+    }
+
+    fn held(
+        &self,
+        table: &SampleTable,
+        displacement: &[f64],
+        residual: Residual,
+    ) -> Vec<Option<Held>> {
+        self.held_sliders(Motion { table, displacement, residual })
     }
 
     fn slip_rate(&self, points: &[PointState]) -> Mat<f64> {
