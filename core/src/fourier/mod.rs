@@ -19,6 +19,27 @@ pub(crate) use legendre::{gauss_legendre, legendre};
 pub use panel::{Interval, Panel};
 pub use turning_points::{SampleTable, TurningPoint};
 
+use faer::c64;
+use std::f64::consts::TAU;
+
+/// Amplitudes X_0, …, X_highest of motions of so many points, point after point, from even instants of a period,
+/// instant after instant; 0 from half as many on as there are instants.
+pub(crate) fn sampled_amplitudes(values: &[f64], points: usize, highest: usize) -> Vec<c64> {
+    let mut amplitudes = vec![c64::new(0.0, 0.0); points * (highest + 1)];
+    let instants = values.len() / points.max(1);
+    for (j, instant) in values.chunks_exact(points.max(1)).enumerate() {
+        for k in 0..=highest.min((instants / 2).saturating_sub(1)) {
+            let share = if k == 0 { 1.0 } else { 2.0 } / instants as f64;
+            let turn = TAU * (j * k % instants) as f64 / instants as f64;
+            let wave = c64::new(share * turn.cos(), -share * turn.sin());
+            for (point, u) in instant.iter().enumerate() {
+                amplitudes[point * (highest + 1) + k] += wave * u;
+            }
+        }
+    }
+    amplitudes
+}
+
 /// Which scalar stands for the size of a periodic motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Measure {

@@ -2,10 +2,8 @@
 //! displacements: what is assumed of them is the same for an orbit and for a balance.
 
 use crate::contact::{Held, Residual};
-use crate::fourier::{Harmonics, SampleTable};
+use crate::fourier::{sampled_amplitudes, Harmonics, SampleTable};
 use crate::motion::{Body, FlowSegment, ModalSystem};
-use faer::c64;
-use std::f64::consts::TAU;
 
 /// Harmonics of displacements, which fall with the fourth power of the order, …
 const HIGHEST: usize = 64;
@@ -19,7 +17,8 @@ pub(super) struct PlanarSliders<'a> {
     /// Between two instants \[s\].
     step: f64,
     /// Displacements of the points of all bodies, instant after instant.
-    samples: Vec<Vec<f64>>,
+    samples: Vec<f64>,
+    instants: usize,
 }
 
 impl<'a> PlanarSliders<'a> {
@@ -35,25 +34,24 @@ impl<'a> PlanarSliders<'a> {
         // Those of bodies that contacts alone hold stay where they are.
         let grounded = system.rigid_modes().is_empty();
         let bodies = system.bodies().iter().filter(|body| grounded && in_plane(body)).collect();
-        Self { system, bodies, step: period / INSTANTS as f64, samples: Vec::new() }
+        Self { system, bodies, step: period / INSTANTS as f64, samples: Vec::new(), instants: 0 }
     }
 
     /// Hears of a stretch of the motion.
     pub(super) fn follow(&mut self, segment: &FlowSegment<'_>) {
         let (end, modes) = (segment.start + segment.duration(), self.system.modes());
-        while !self.bodies.is_empty() && self.samples.len() < INSTANTS {
-            let time = self.samples.len() as f64 * self.step;
+        while !self.bodies.is_empty() && self.instants < INSTANTS {
+            let time = self.instants as f64 * self.step;
             if time > end {
                 return;
             }
             let tau = (time - segment.start) * segment.series.rate();
             let (mut modal, mut velocity) = (vec![0.0; modes], vec![0.0; modes]);
             segment.series.motion_at(tau, &mut modal, &mut velocity);
+            let displacement = self.system.contact_displacement(&modal);
             let points = self.bodies.iter().flat_map(|body| body.points.clone());
-            let displacement = |point: usize| -> f64 {
-                self.system.contact_shape(point).iter().zip(&modal).map(|(b, x)| b * x).sum()
-            };
-            self.samples.push(points.map(displacement).collect());
+            self.samples.extend(points.map(|point| displacement[point]));
+            self.instants += 1;
         }
     }
 
@@ -65,19 +63,21 @@ impl<'a> PlanarSliders<'a> {
         moved: impl Fn(usize) -> f64,
     ) -> Vec<(usize, &'a Body, Held)> {
         let mut held = Vec::new();
-        if self.bodies.is_empty() || self.samples.len() < INSTANTS {
+        if self.instants < INSTANTS {
             return held;
         }
         let table = SampleTable::new(Harmonics::new(HIGHEST, false));
         let slots = table.harmonics().slots();
-        let mut first = 0;
+        let points = self.samples.len() / INSTANTS;
+        let amplitudes = sampled_amplitudes(&self.samples, points, HIGHEST);
+        let mut rows = amplitudes.chunks_exact(HIGHEST + 1);
         for &body in &self.bodies {
             let mut series = vec![0.0; body.points.len() * slots];
-            for (row, own) in series.chunks_exact_mut(slots).enumerate() {
-                table.harmonics().write_series(&self.amplitudes(first + row), own);
-                own[0] -= moved(body.points.start + row);
+            let own = series.chunks_exact_mut(slots).zip(&mut rows);
+            for ((own, amplitudes), point) in own.zip(body.points.clone()) {
+                table.harmonics().write_series(amplitudes, own);
+                own[0] -= moved(point);
             }
-            first += body.points.len();
             let own = body.law.held(&table, &series, residual);
             for (one, &point) in own.iter().zip(&body.remembered) {
                 let by = moved(point);
@@ -88,18 +88,5 @@ impl<'a> PlanarSliders<'a> {
             }
         }
         held
-    }
-
-    /// Amplitudes of a displacement.
-    fn amplitudes(&self, row: usize) -> Vec<c64> {
-        let share = |order: usize| if order == 0 { 1.0 } else { 2.0 } / INSTANTS as f64;
-        let amplitude = |order: usize| {
-            let turned = self.samples.iter().enumerate().map(|(instant, sample)| {
-                let angle = TAU * ((order * instant) % INSTANTS) as f64 / INSTANTS as f64;
-                c64::new(angle.cos(), -angle.sin()) * sample[row]
-            });
-            turned.fold(c64::new(0.0, 0.0), |sum, one| sum + one) * share(order)
-        };
-        (0..=HIGHEST).map(amplitude).collect()
     }
 }

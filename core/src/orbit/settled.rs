@@ -1,6 +1,7 @@
 //! Motions that settle in time: starts for harmonic balances with laws that have no events, and so no
 //! exact orbits.
 
+use crate::fourier::sampled_amplitudes;
 use crate::model::Model;
 use crate::motion::{transient, ModalSystem, Scheme, TransientSettings};
 use crate::progress::Progress;
@@ -69,17 +70,6 @@ impl Settled {
 
     /// Amplitudes U_k of the contact displacements, k = 0..=highest, contact after contact.
     pub(super) fn amplitudes(&self, highest: usize) -> Vec<c64> {
-        let mut amplitudes = vec![c64::new(0.0, 0.0); self.contacts * (highest + 1)];
-        for (j, instant) in self.displacement.chunks_exact(self.contacts).enumerate() {
-            for k in 0..=highest.min(SAMPLES / 2 - 1) {
-                let share = if k == 0 { 1.0 } else { 2.0 } / SAMPLES as f64;
-                let turn = TAU * (j * k % SAMPLES) as f64 / SAMPLES as f64;
-                let wave = c64::new(share * turn.cos(), -share * turn.sin());
-                for (point, u) in instant.iter().enumerate() {
-                    amplitudes[point * (highest + 1) + k] += wave * u;
-                }
-            }
-        }
-        amplitudes
+        sampled_amplitudes(&self.displacement, self.contacts, highest)
     }
 }
