@@ -220,7 +220,7 @@ def _compute_here(
     """Compute samples in threads; False if Ctrl-C has ended it."""
     parts = [partial(sampled, work, values) for values in work.parameters]
     try:
-        with closing(in_turn(parts, lambda _: run.heed(), threads=threads)) as samples:
+        with closing(in_turn(parts, lambda _: run.heed(), threads=threads, ahead=4)) as samples:
             for number, found in zip(work.numbers, samples, strict=True):
                 deliver(number, found)
     except KeyboardInterrupt:

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import os
 from collections import deque
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, wait
+from functools import partial
 from itertools import islice
 from threading import Event, local
 from typing import TypeVar
@@ -35,13 +36,15 @@ def in_turn(
     *,
     alone: bool = False,
     threads: int | None = None,
+    ahead: int = 1,
 ) -> Generator[_Kind, None, None]:
     """Yield what parts of a work give, in their order; `alone`, one after the other in this thread.
 
     Each part gets the progress that it has to tell; Ctrl-C, and what `progress` raises to end the
     work, reach it as `KeyboardInterrupt` of that. `progress` is called in this thread, with the
     share of the work done. `KeyboardInterrupt` comes behind the last part that was complete, or
-    what the part raises that was not.
+    what the part raises that was not. No more than `ahead` times as many parts as threads are under
+    way: what is complete waits in memory for those before it.
     """
     count = len(parts)
     threads = at_once(count, alone=alone, threads=threads)
@@ -51,7 +54,8 @@ def in_turn(
             if progress is not None:
                 progress((number + 1) / count)
         return
-    told, ended = [0.0] * count, Event()
+    told: dict[int, float] = {}
+    ended = Event()
     waiting: deque[Future[_Kind]] = deque()
     pool = ThreadPoolExecutor(threads, "stickslip")
     rest = iter(range(count))
@@ -63,19 +67,22 @@ def in_turn(
                 raise KeyboardInterrupt
 
         _WITHIN.part = True
+        heard(0.0)
         given = parts[number](heard)
         told[number] = 1.0
         return given
 
     try:
-        for _ in range(count):
-            # No more than can be worked on: what is complete waits in memory for those before it.
-            for number in islice(rest, threads - len(waiting)):
+        for first in range(count):
+            for number in islice(rest, ahead * threads - len(waiting)):
+                told[number] = 0.0
                 waiting.append(pool.submit(computed, number))
-            stop = _awaited(waiting[0], told, progress)
+            done = partial(_share_done, first, told, count)
+            stop = _awaited(waiting[0], done, progress)
             if stop is not None:
                 ended.set()
             yield waiting.popleft().result()
+            del told[first]
             if stop is not None:
                 raise stop
     finally:
@@ -99,15 +106,19 @@ def processors() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
+def _share_done(complete: int, told: Mapping[int, float], count: int) -> float:
+    return (complete + sum(told.values())) / count
+
+
 def _awaited(
-    part: Future[_Kind], told: Sequence[float], progress: Progress
+    part: Future[_Kind], share_done: Callable[[], float], progress: Progress
 ) -> KeyboardInterrupt | None:
     """Wait for a part, or until the caller ends the work."""
     try:
         while True:
             done = wait([part], timeout=_LOOK).done
             if progress is not None:
-                progress(sum(told) / len(told))
+                progress(share_done())
             if done:
                 return None
     except KeyboardInterrupt as stop:
