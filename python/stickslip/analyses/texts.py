@@ -162,7 +162,8 @@ TEXTS = {
     "narrow the bounds, or measure more.",
     "misfit-above-noise": "The model does not fit within the noise: the residuals of the {numbers} "
     "numbers scatter by {scatter:.3g} standard deviations. A better minimum may lie elsewhere: "
-    "give nearer bounds, or more starts. Or another law fits better, or the noise is larger.",
+    "give nearer bounds, or more starts. Or another law fits better, or the noise is larger than "
+    "given.",
     "predictions-missing": "{count} of {total} numbers could not be predicted by the best fit and "
     "count as zero; look at the forced response of the fitted model.",
     # uncertainty
