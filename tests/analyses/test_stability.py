@@ -276,3 +276,29 @@ def test_an_unstable_motion_has_another_one_beside_it_and_that_is_told():
         assert result.unique.tolist() == ["yes"]
         assert result.stable.tolist() == [False]
         assert told_of(result)["other-motion"].data["points"] == 1
+
+
+def test_contacts_decide_how_many_harmonics_stability_takes():
+    """The observed DOF is right to 1.4e-4 with 7 harmonics; the contact is not, and its motion is unstable."""
+    mass = [0.724, 1.24, 0.881, 0.414, 1.04, 2.16]
+    stiffness = np.diag([3005.0, 11016, 12072, 5919, 5279, 932])
+    for i, j, spring in [(0, 1, 845), (1, 2, 8773), (1, 4, 1374), (2, 3, 2923), (3, 4, 2761)]:
+        stiffness[i, j] = stiffness[j, i] = -spring
+    stiffness[4, 5] = stiffness[5, 4] = -765
+    names = [f"d{i}" for i in range(6)]
+    structure = ss.Structure(np.diag(mass), stiffness, ss.ModalDamping(0.004575), names)
+    contact = ss.Coulomb(
+        ["d3", "d5"],
+        ["d0", "d2"],
+        normal=(-0.9987, -0.051),
+        friction=0.483,
+        tangential_stiffness=1023.0,
+        normal_stiffness=1914.0,
+        preload=0.757,
+    )
+    model = ss.Model(structure, [contact], [ss.Force("d0", 10.49)])
+    exact = ss.exact_response(model, [13.1775])
+    few = ss.forced_response(model, [13.1775], observe=["d0"])
+    assert few.harmonics[0] < 13
+    assert few.amplitude("d0") == pytest.approx(exact.amplitude("d0"), rel=3e-4)
+    assert [exact.stable[0], few.stable[0]] == [False, False]

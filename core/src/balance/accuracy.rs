@@ -156,6 +156,8 @@ pub(super) struct Estimate {
     pub(super) errors: Vec<f64>,
     /// The same after the first step.
     pub(super) first: Vec<f64>,
+    /// Largest change of the motion of a contact, relative to its vibration; of the steps taken together.
+    pub(super) contacts: f64,
     /// Whether it makes no contact begin or cease to slip.
     pub(super) keeps_states: bool,
     /// Whether it ended after the first step because of that.
@@ -171,6 +173,7 @@ impl Estimate {
         Self {
             first: errors.clone(),
             errors,
+            contacts: error,
             keeps_states: error.is_finite(),
             ended_in_state: false,
             took_two: false,
@@ -215,7 +218,8 @@ fn of_extended(
     extension: &Extension,
 ) -> Result<Option<Estimate>, Error> {
     let table = extended.table;
-    let mut x = solution.recast(table.harmonics());
+    let begin = solution.recast(table.harmonics());
+    let mut x = begin.clone();
     let (mut defect, mut step) = (vec![0.0; x.len()], vec![0.0; x.len()]);
     extended.residual(&x, &mut defect);
     let mut found = Estimate::of(0.0, observe.len());
@@ -232,6 +236,7 @@ fn of_extended(
         extended.add_tangent_product(&step, &mut slip_load);
         x.iter_mut().zip(&step).for_each(|(x, s)| *x += s);
         let changes = changes(extended, &x, &slip_load, observe, point)?;
+        found.contacts = contact_change(extended, &begin, &x);
         found.took_two = last;
         if last {
             let trusted = if found.keeps_states { TRUSTED } else { f64::INFINITY };
@@ -272,6 +277,26 @@ fn slipping(extended: &Condensed<'_>) -> Vec<bool> {
 /// Sizes of the series of all points.
 fn by_point(series: &[f64], table: &SampleTable) -> Vec<f64> {
     series.chunks_exact(table.harmonics().slots()).map(norm).collect()
+}
+
+/// Largest change of the motion of a contact, relative to its vibration.
+fn contact_change(extended: &Condensed<'_>, begin: &[f64], x: &[f64]) -> f64 {
+    let (slots, offset) = (extended.harmonics().slots(), extended.harmonics().offset());
+    let changes = extended.model.points().iter().map(|points| {
+        let (mut change, mut vibration) = (0.0_f64, 0.0_f64);
+        for point in points.clone() {
+            let series = point * slots + offset..(point + 1) * slots;
+            let (begin, x) = (&begin[series.clone()], &x[series]);
+            vibration += begin.iter().map(|a| a * a).sum::<f64>();
+            change += begin.iter().zip(x).map(|(a, b)| (b - a).powi(2)).sum::<f64>();
+        }
+        if vibration > 0.0 {
+            (change / vibration).sqrt()
+        } else {
+            0.0
+        }
+    });
+    changes.fold(0.0, f64::max)
 }
 
 /// Sum over all harmonics of how far each observed DOF is from a point in the extended balance.

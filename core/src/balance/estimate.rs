@@ -121,7 +121,8 @@ impl ForcedBalance<'_> {
         let growth = if follows { self.neighbour.served(point) } else { None };
         let extension = if growth.is_some() { whole.beside() } else { whole };
         let estimate = self.extended(&solution, solved, point, extension)?;
-        let Some(Estimate { mut errors, first, keeps_states, ended_in_state, took_two }) = estimate
+        let Some(Estimate { mut errors, first, keeps_states, ended_in_state, took_two, .. }) =
+            estimate
         else {
             return Ok(false);
         };
@@ -135,6 +136,22 @@ impl ForcedBalance<'_> {
         self.neighbour.note(point, solution, &errors);
         point.error_estimate = errors;
         Ok(true)
+    }
+
+    /// How wrong a solution is at its contacts: the largest change that the discarded harmonics would bring to
+    /// the motion of one, relative to its vibration. Nothing without an answer.
+    pub(crate) fn contact_error(&mut self, point: &Point) -> Option<f64> {
+        let solution = point.unknowns.clone()?;
+        let slipping = self.nonlinear_points(point);
+        if slipping == 0 {
+            return Some(0.0);
+        }
+        let given = self.evaluated(None).ok()?;
+        let harmonics = &solution.harmonics;
+        let effort = Effort::new(&given, harmonics.half_wave(), slipping, self.observe.len());
+        let extension = Extension::new(&effort, harmonics, point.omega, f64::INFINITY);
+        let found = self.extended(&solution, None, &mut point.clone(), extension).ok()??;
+        Some(found.contacts)
     }
 
     /// What an extended balance says of a solution; nothing, and no estimate of the point, if the analysis

@@ -19,12 +19,15 @@ const BOUNCING: f64 = 300.0;
 /// Work that the solution with more harmonics than the tolerance asks for may take, as reckoned \[ns\].
 const OF_VERDICT: f64 = 1e9;
 
+/// Times that the number of harmonics is doubled, as long as the last doubling leaves it open.
+const DOUBLINGS: usize = 3;
+
 /// Decides the stability of the points of a curve, as far as the map over a period tells it; those of a
 /// travelling wave stay undecided. `settings` are those of its balance.
 ///
 /// Where the harmonics left out could take the largest multiplier to the other side of 1, the point is
-/// solved with about twice as many: it is decided if they change the multiplier by less than its distance
-/// from 1. So is every point that seems unstable: a contact that nearly grazes its limit may slip in the
+/// solved with about twice as many, and again: it is decided once they change the multiplier by less than its
+/// distance from 1. So is every point that seems unstable: a contact that nearly grazes its limit may slip in the
 /// motion of few harmonics alone. Points are judged at the same time, each by itself. An analysis that is
 /// ended leaves those undecided that it has not come to.
 ///
@@ -50,14 +53,27 @@ pub fn decide_stability(
     let found = in_parts(points.len(), progress, |index, progress| {
         let point = points.get(index).filter(|point| point.is_solved() && progress(0.0))?;
         let found = along(&map, point)?;
-        let away = (found.largest() - 1.0).abs();
         let sensitivity = if bounces(model, point) { BOUNCING } else { SENSITIVITY };
-        let clear = found.stable().filter(|_| away > sensitivity * relative_error(point));
-        if clear == Some(true) {
-            return Some(clear);
+        let allowed = (found.largest() - 1.0).abs() / sensitivity;
+        let is_clear = relative_error(point) < allowed
+            && (found.stable() != Some(true)
+                || contact_error(model, settings, point, progress) < allowed);
+        let mut stable = found.stable().filter(|_| is_clear);
+        if stable == Some(true) {
+            return Some(stable);
         }
-        let finer = with_more_harmonics(model, settings, point, progress);
-        let stable = finer.map_or(clear, |finer| decided(&found, &along(&map, &finer)?));
+        let (mut coarse, mut of_coarse) = (point.clone(), found);
+        for _ in 0..DOUBLINGS {
+            let Some(finer) = with_more_harmonics(model, settings, &coarse, progress) else {
+                break;
+            };
+            let of_finer = along(&map, &finer)?;
+            stable = decided(&of_coarse, &of_finer);
+            if stable.is_some() {
+                break;
+            }
+            (coarse, of_coarse) = (Arc::new(finer), of_finer);
+        }
         progress(0.0).then_some(stable)
     });
     let taken = start.elapsed();
@@ -94,6 +110,13 @@ fn relative_error(point: &Point) -> f64 {
     } else {
         0.0
     }
+}
+
+/// What the estimate gives of the contacts, which the observed DOFs may not feel.
+fn contact_error(model: &Model, settings: Settings, point: &Point, progress: &Progress<'_>) -> f64 {
+    let balance = ForcedBalance::new(model, settings, &[]);
+    let error = balance.ok().and_then(|balance| balance.watched(progress).contact_error(point));
+    error.unwrap_or(0.0)
 }
 
 /// The point with about twice as many harmonics; nothing if it cannot be solved.
