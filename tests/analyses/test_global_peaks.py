@@ -278,7 +278,7 @@ def built(case):
     if "ratio" in damping:
         law = ss.ModalDamping(damping["ratio"])
     else:
-        law = ss.Rayleigh(*damping["rayleigh"]) if "rayleigh" in damping else damping["matrix"]
+        law = ss.Rayleigh(**damping["rayleigh"]) if "rayleigh" in damping else damping["matrix"]
     names = [f"q{i}" for i in range(len(case["mass"]))]
     structure = ss.Structure(case["mass"], case["stiffness"], law, names)
     contacts = [

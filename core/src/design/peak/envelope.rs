@@ -193,7 +193,7 @@ impl Envelope {
     }
 
     /// The interval in which the curve of a group has a kink and may be higher than its highest point by the
-    /// share `gain`, if it keeps the slope with which it leaves an end; the one in which it may be highest.
+    /// share `gain`, as far as the ends tell; the one in which it may be highest.
     pub(super) fn most_kinked(&self, gain: f64) -> Option<usize> {
         let heights: Vec<f64> = (0..self.groups.len()).map(|group| self.height(group)).collect();
         let curves = || {
@@ -209,7 +209,7 @@ impl Envelope {
             }
             for (curve, height) in curves() {
                 let between = [ends[0].knots[curve], ends[1].knots[curve]];
-                let reach = Knot::persisting(between) / height;
+                let reach = Knot::kinked(between) / height;
                 if reach > best.1 && Knot::has_kink(between) {
                     best = (Some(i), reach);
                 }

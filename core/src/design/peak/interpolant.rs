@@ -15,19 +15,25 @@ pub(crate) struct Knot {
 const KINK: f64 = 0.25;
 
 impl Knot {
-    /// How high a curve between two points is at most if it keeps the slope with which it leaves either.
-    pub(super) fn persisting([left, right]: [Self; 2]) -> f64 {
+    /// How high a curve between two points may be if it keeps the slope with which it leaves either, or rises
+    /// above the higher one by as much as the mean of their slopes misses.
+    pub(super) fn kinked([left, right]: [Self; 2]) -> f64 {
         let width = right.at - left.at;
         let (up, down) = (left.slope.max(0.0), right.slope.min(0.0));
-        (left.height + width * up).max(right.height - width * down)
+        let persisting = (left.height + width * up).max(right.height - width * down);
+        persisting.max(left.height.max(right.height) + Self::missed([left, right]))
+    }
+
+    /// What the mean of the slopes of two points misses of the way from one to the other.
+    fn missed([left, right]: [Self; 2]) -> f64 {
+        let expected = 0.5 * (right.at - left.at) * (left.slope + right.slope);
+        (right.height - left.height - expected).abs()
     }
 
     /// Whether the mean of the slopes of two points does not lead from one to the other: the curve between them
     /// is far from a parabola.
     pub(super) fn has_kink([left, right]: [Self; 2]) -> bool {
-        let rise = right.height - left.height;
-        let expected = 0.5 * (right.at - left.at) * (left.slope + right.slope);
-        (rise - expected).abs() > KINK * rise.abs()
+        Self::missed([left, right]) > KINK * (right.height - left.height).abs()
     }
 }
 
