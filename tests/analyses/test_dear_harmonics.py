@@ -80,3 +80,30 @@ def test_given_harmonics_are_given_up_soon(disk):
     assert failed.counters["factorisations"] < 400
     # From fewer harmonics, where these lead up to it.
     assert at(disk, 240.0, 127).status == ("converged",)
+
+
+@pytest.mark.slow
+def test_products_that_lead_nowhere_are_no_resonance():
+    """Of 25 dampers the Jacobian of 95 harmonics is too large to be formed."""
+
+    def number(i):
+        return np.modf(np.modf(43758.5453 * np.sin(12.9898 * (i + 1)))[0] + 1.0)[0]
+
+    springs = 10 ** (3.0 + 2.0 * number(np.arange(34)))
+    stiffness = np.diag(springs[:-1] + springs[1:])
+    stiffness -= np.diag(springs[1:-1], 1) + np.diag(springs[1:-1], -1)
+    names = [f"x{i}" for i in range(33)]
+    structure = ss.Structure(np.eye(33), stiffness, 0.5 * np.eye(33), names)
+    dampers = [
+        ss.Jenkins(
+            names[i],
+            stiffness=10 ** (3.0 + 2.5 * number(100 + i)),
+            slip_force=10 ** (3.0 * number(200 + i) - 2.0),
+        )
+        for i in range(25)
+    ]
+    model = ss.Model(structure, dampers, [ss.Force("x16", 50.0)])
+    found = ss.forced_response(model, [5.45], stability=False)
+    assert found.status == ("effort limit",)
+    (exact,) = ss.exact_response(model, [5.45]).amplitude("x16")
+    assert abs(found.amplitude("x16")[0] - exact) < 1e-3 * exact

@@ -83,6 +83,10 @@ pub(super) struct Extension {
     /// What its changes count, so that they stand for those of harmonics that it cannot afford as well.
     pub(super) unseen: f64,
     pub(super) account: Account,
+    /// Products that a step may take where the solution takes none: they are few, or too dear.
+    pub(super) products: Option<usize>,
+    /// Whether its Jacobian is formed in any case.
+    pub(super) formed: bool,
 }
 
 impl Extension {
@@ -103,10 +107,9 @@ impl Extension {
             first: effort.orders(order, [1.0, 1.0]) - known + effort.step(order),
             step: effort.orders(order, [0.0, 1.0]) + effort.step(order),
         };
-        let affordable = |order: &usize| {
-            let share = effort.allowed([highest, *order]);
-            account(*order).of(true) <= allowance(share, steps, orders).min(credit)
-        };
+        let budget =
+            |order: usize| allowance(effort.allowed([highest, order]), steps, orders).min(credit);
+        let affordable = |order: &usize| account(*order).of(true) <= budget(*order);
         let candidates = (highest + least..=wanted).step_by(least);
         let farthest = candidates.take_while(affordable).last();
         let order = farthest.unwrap_or(highest + least);
@@ -114,7 +117,12 @@ impl Extension {
         let sum = |to: usize| 1.0 / (highest + least) as f64 - 1.0 / (to + least) as f64;
         let unseen = sum(wanted.max(order)) / sum(order);
         let steps = if farthest.is_some() { Steps::Two } else { Steps::One };
-        Self { highest: order, steps, unseen, account: account(order) }
+        // Each of two steps may take half of what is left.
+        let left = (budget(order) - account(order).of(true)).max(0.0);
+        let of_step = effort.step(order) + 0.5 * left;
+        let products = effort.products_within(of_step, [highest, order]);
+        let formed = effort.is_formed();
+        Self { highest: order, steps, unseen, account: account(order), products, formed }
     }
 
     /// Whether a neighbour may tell what its second step adds.
@@ -167,6 +175,11 @@ pub(super) struct Estimate {
 }
 
 impl Estimate {
+    /// Whether the extended balance led nowhere.
+    pub(super) fn is_lost(&self) -> bool {
+        !self.contacts.is_finite()
+    }
+
     /// Of the same change of every observed DOF.
     fn of(error: f64, observed: usize) -> Self {
         let errors = vec![error; observed];
@@ -197,6 +210,12 @@ pub(super) fn estimate(
     profile: &mut Profile,
 ) -> Result<Option<Estimate>, Error> {
     let mut extended = Condensed::new(model, table, residual, false);
+    if extension.formed {
+        extended.densify();
+    }
+    if let Some(most) = extension.products {
+        extended.hold_to_products(most);
+    }
     extended.watch(interrupted);
     if extended.set_omega_beside(point.omega, solved).is_err() {
         return Ok(Some(Estimate::of(f64::INFINITY, observe.len())));

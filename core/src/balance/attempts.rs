@@ -148,7 +148,8 @@ impl ForcedBalance<'_> {
         // Where harmonics are chosen an orbit is the answer.
         let answered = orbit && self.control.only_harmonics_climb();
         // Where nothing holds the mean of many contacts, paths to the same motion take minutes.
-        let lost = report.outcome == Outcome::Singular && equations.is_lost();
+        let lacks = equations.lacks_direction();
+        let lost = report.outcome == Outcome::Singular && (equations.is_lost() || lacks);
         let follows = (samples.is_some() || self.follows()) && !lost;
         if has_failed(&report) && !answered && patient && follows {
             self.profile.homotopies += 1;
@@ -162,8 +163,8 @@ impl ForcedBalance<'_> {
             Outcome::Singular if equations.free => PointStatus::Free,
             Outcome::Stalled if equations.loose || equations.floats() => PointStatus::Free,
             Outcome::Stalled | Outcome::Singular if self.is_carried_away() => PointStatus::Free,
-            Outcome::Stalled => PointStatus::Stalled,
-            Outcome::Singular => PointStatus::Singular,
+            Outcome::Singular if !lacks => PointStatus::Singular,
+            Outcome::Stalled | Outcome::Singular => PointStatus::Stalled,
         };
         if status != PointStatus::Converged {
             // The recovery reads slip loads at the point that is returned.

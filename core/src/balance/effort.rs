@@ -1,6 +1,6 @@
 //! What solutions and their error estimates cost, as reckoned before any is made.
 
-use super::modal_work::{of_step, suits};
+use super::modal_work::{of_step, products_within, suits, suits_laws};
 use super::ring::RingNewton;
 use crate::fourier::Harmonics;
 use crate::model::Model;
@@ -23,6 +23,9 @@ const ALLOWED_OF_MANY: f64 = 0.25;
 /// The same of many nodes that slip or open, of which nearly all is reckoned.
 const ALLOWED_OF_NODES: f64 = 0.8;
 
+/// Share of a look for turning points that a contact takes if it sticks: measured, 0.1 to 0.2.
+const OF_STICKING: f64 = 0.15;
+
 /// Newton steps with a tangent of their own, and evaluations of the laws without, that a solution beside another
 /// one takes on coarse curves. That of another method is judged alike.
 const BESIDE: f64 = 2.5;
@@ -33,6 +36,7 @@ pub(super) fn allowance(share: f64, steps: f64, orders: f64) -> f64 {
 }
 
 /// About the time of a balance on a common processor \[ns\]; its ratios count.
+#[derive(Clone, Copy)]
 pub(super) struct Effort<'a> {
     model: &'a Model,
     half_wave: bool,
@@ -41,6 +45,8 @@ pub(super) struct Effort<'a> {
     of_order: [f64; 2],
     /// Points that a law couples, in the mean.
     coupled: f64,
+    /// Whether Jacobians are formed in any case.
+    formed: bool,
 }
 
 impl<'a> Effort<'a> {
@@ -48,7 +54,18 @@ impl<'a> Effort<'a> {
     /// degrees of freedom.
     pub(super) fn new(model: &'a Model, half_wave: bool, slipping: usize, observed: usize) -> Self {
         let of_order = model.compliance().effort(observed);
-        Self { model, half_wave, slipping, of_order, coupled: coupled_points(model) }
+        let coupled = coupled_points(model);
+        Self { model, half_wave, slipping, of_order, coupled, formed: false }
+    }
+
+    /// The same where Jacobians are formed in any case.
+    pub(super) fn formed(&self) -> Self {
+        Self { formed: true, ..*self }
+    }
+
+    /// Whether Jacobians are formed though products would be less work.
+    pub(super) fn is_formed(&self) -> bool {
+        self.formed
     }
 
     pub(super) fn compliance(&self) -> &'a dyn Compliance {
@@ -104,7 +121,8 @@ impl<'a> Effort<'a> {
     /// Whether receptances are not formed.
     fn is_of_many(&self, highest: usize) -> bool {
         let compliance = self.compliance();
-        compliance.contact_modes().is_some()
+        !self.formed
+            && compliance.contact_modes().is_some()
             && suits(compliance, &Harmonics::new(highest, self.half_wave))
     }
 
@@ -120,23 +138,41 @@ impl<'a> Effort<'a> {
     fn values(&self, highest: usize) -> f64 {
         let slots = self.slots(highest);
         let (contacts, slipping) = (self.compliance().contacts() as f64, self.slipping as f64);
-        // Every law looks for turning points, unless amplitudes alone show that it sticks, as nearly all
-        // of a ring do; one that slips integrates.
-        let looks = if self.compliance().ring().is_some() { slipping } else { contacts };
+        // Every law looks for turning points, unless amplitudes alone show that it sticks; one that slips
+        // integrates.
+        let sticking = if self.compliance().ring().is_some() { 0.0 } else { contacts - slipping };
+        let looks = slipping + OF_STICKING * sticking.max(0.0);
         looks * (600.0 + 40.0 * slots) + slipping * (600.0 + 80.0 * slots)
+    }
+
+    /// Products that a Newton step in the harmonics up to `order` may take, if it may take so long and those up to
+    /// `highest` take none.
+    pub(super) fn products_within(&self, time: f64, [highest, order]: [usize; 2]) -> Option<usize> {
+        let takes = |order| suits_laws(self.model, &Harmonics::new(order, self.half_wave));
+        if self.formed || takes(highest) || !takes(order) {
+            return None;
+        }
+        let (slots, slipping) = (self.slots(order), self.slipping as f64);
+        let left = time - self.laws(order);
+        Some(products_within(left, self.compliance(), slots, slipping, self.coupled).max(1.0)
+            as usize)
+    }
+
+    /// Of the laws with their tangents.
+    fn laws(&self, highest: usize) -> f64 {
+        self.values(highest) + self.slipping as f64 * 2.5 * self.slots(highest).powi(2)
     }
 
     /// Of a Newton step in the harmonics up to `highest`.
     pub(super) fn step(&self, highest: usize) -> f64 {
         let (compliance, slots) = (self.compliance(), self.slots(highest));
         let slipping = self.slipping as f64;
-        let laws = self.values(highest) + slipping * 2.5 * slots.powi(2);
         let linear = match compliance.ring() {
             Some(ring) => RingNewton::effort(ring, slots, slipping),
             None if self.is_of_many(highest) => of_step(compliance, slots, slipping, self.coupled),
             None => 1e3 + 100.0 * slipping * slots + 0.06 * (slipping * slots).powi(3),
         };
-        laws + linear
+        self.laws(highest) + linear
     }
 }
 

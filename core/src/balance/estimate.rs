@@ -120,7 +120,7 @@ impl ForcedBalance<'_> {
         }
         let growth = if follows { self.neighbour.served(point) } else { None };
         let extension = if growth.is_some() { whole.beside() } else { whole };
-        let estimate = self.extended(&solution, solved, point, extension)?;
+        let estimate = self.extended(&solution, solved, point, (&effort, extension))?;
         let Some(Estimate { mut errors, first, keeps_states, ended_in_state, took_two, .. }) =
             estimate
         else {
@@ -150,13 +150,32 @@ impl ForcedBalance<'_> {
         let harmonics = &solution.harmonics;
         let effort = Effort::new(&given, harmonics.half_wave(), slipping, self.observe.len());
         let extension = Extension::new(&effort, harmonics, point.omega, f64::INFINITY);
-        let found = self.extended(&solution, None, &mut point.clone(), extension).ok()??;
+        let mut point = point.clone();
+        let found = self.extended(&solution, None, &mut point, (&effort, extension)).ok()??;
         Some(found.contacts)
     }
 
-    /// What an extended balance says of a solution; nothing, and no estimate of the point, if the analysis
-    /// is to end.
+    /// What an extended balance says of a solution, one of fewer harmonics if the products that it may take do
+    /// not lead to a step; nothing, and no estimate of the point, if the analysis is to end.
     fn extended(
+        &mut self,
+        solution: &Unknowns,
+        solved: Option<&Condensed<'_>>,
+        point: &mut Point,
+        (effort, extension): (&Effort<'_>, Extension),
+    ) -> Result<Option<Estimate>, Error> {
+        let found = self.extended_to(solution, solved, point, extension)?;
+        if extension.products.is_none() || !found.as_ref().is_some_and(Estimate::is_lost) {
+            return Ok(found);
+        }
+        self.neighbour.pay(extension.account.of(false));
+        let (kept, omega) = (&solution.harmonics, point.omega);
+        let formed = Extension::new(&effort.formed(), kept, omega, f64::INFINITY);
+        self.extended_to(solution, solved, point, formed)
+    }
+
+    /// What an extended balance says of a solution.
+    fn extended_to(
         &mut self,
         solution: &Unknowns,
         solved: Option<&Condensed<'_>>,

@@ -96,3 +96,43 @@ fn a_solution_that_lacks_samples_is_not_asked_for_its_harmonics() {
     assert!(last.is_solved() && last.samples > Some(32));
     assert!(last.error_estimate[0] > 2.0 * last.sampling_error[0]);
 }
+
+/// A chain of 33 masses, 25 of them with a slider to ground, of stiffnesses over decades.
+fn chain() -> Model {
+    let number = |i: usize| (43758.5453 * (12.9898 * (i + 1) as f64).sin()).rem_euclid(1.0);
+    let springs: Vec<f64> = (0..34).map(|i| 10_f64.powf(3.0 + 2.0 * number(i))).collect();
+    let stiffness = Mat::from_fn(33, 33, |i, j| match i.abs_diff(j) {
+        0 => springs[i] + springs[i + 1],
+        1 => -springs[i.max(j)],
+        _ => 0.0,
+    });
+    let damping = Mat::from_fn(33, 33, |i, j| if i == j { 0.5 } else { 0.0 });
+    let mass = Mat::<f64>::identity(33, 33);
+    let structure = Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref()).unwrap();
+    let contact = |i: usize| {
+        let stiffness = 10_f64.powf(3.0 + 2.5 * number(100 + i));
+        let slip_force = 10_f64.powf(3.0 * number(200 + i) - 2.0);
+        let law = Box::new(Jenkins::new(stiffness, slip_force).unwrap());
+        Contact { law, rows: Mat::from_fn(1, 33, |_, j| if i == j { 1.0 } else { 0.0 }) }
+    };
+    let amplitude = (0..33).map(|i| c64::new(if i == 16 { 10.0 } else { 0.0 }, 0.0)).collect();
+    let load = HarmonicLoad { harmonic: 1, amplitude };
+    Model::new(structure, (0..25).map(contact).collect(), vec![load]).unwrap()
+}
+
+/// Products with the modes that do not lead to a step are no reason to form a Jacobian of all its harmonics.
+#[test]
+fn an_estimate_of_some_that_slip_among_many_takes_no_more_than_its_solution() {
+    let model = chain();
+    let settings = Settings { harmonics: HarmonicChoice::Fixed(9), ..Settings::default() };
+    let all: Vec<usize> = (0..33).collect();
+    let [solution, both] = [&[][..], &all].map(|observe| {
+        let mut balance = ForcedBalance::new(&model, settings, observe).unwrap();
+        let point = balance.solve(5.45, None).unwrap();
+        let slipping = point.contacts.iter().filter(|one| one.slip_fraction > 0.0).count();
+        assert!(point.is_solved() && (5..15).contains(&slipping), "{slipping}");
+        balance.into_profile().work
+    });
+    assert!(both > 1.05 * solution, "{both} {solution}");
+    assert!(both < 2.0 * solution, "{both} {solution}");
+}

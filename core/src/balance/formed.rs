@@ -28,6 +28,11 @@ impl Condensed<'_> {
         self.form()
     }
 
+    /// Whether products led to no direction, which is no sign of a singular Jacobian.
+    pub(super) fn lacks_direction(&self) -> bool {
+        matches!(self.linear, Linear::Modal(_)) && self.by_products.failures > 0
+    }
+
     /// Takes dense receptances from the next Jacobian on, if the last direction took so many products that
     /// these cost more.
     pub(super) fn form_if_cheaper(&mut self) {
@@ -40,9 +45,16 @@ impl Condensed<'_> {
         }
     }
 
+    /// Has directions take at most so many products, and no Jacobian formed in their place.
+    pub(super) fn hold_to_products(&mut self, most: usize) {
+        self.by_products.most = Some(most);
+    }
+
     fn form(&mut self) -> bool {
         let (slots, slipping) = (self.table.harmonics().slots(), self.active_points().len());
-        if !may_be_formed(self.model.compliance(), slots, slipping) {
+        if self.by_products.most.is_some()
+            || !may_be_formed(self.model.compliance(), slots, slipping)
+        {
             return false;
         }
         self.by_products.replaced = self.take(Linear::dense(self.table, self.slopes));

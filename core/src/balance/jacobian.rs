@@ -3,7 +3,7 @@
 //! The Newton direction is found from the slip loads that depend on the motion: [`SlipJacobian`].
 
 use super::condensed::{Condensed, Path};
-use super::krylov_newton::{KrylovNewton, Products};
+use super::krylov_newton::{KrylovNewton, Products, MOST_PRODUCTS};
 use super::linear::{Factor, Linear};
 use super::ring::{RingNewton, RingSeries};
 use super::slip_jacobian::{Answers, Border, Loads, SlipJacobian};
@@ -163,6 +163,7 @@ impl Condensed<'_> {
             loads: self.tangents(),
             sizes: &self.sizes,
             fine: self.fine,
+            most: self.by_products.most.unwrap_or(MOST_PRODUCTS),
             interrupted: self.interrupted,
         }
     }

@@ -19,7 +19,7 @@ const FINE: f64 = 1e-11;
 /// The same of equations whose frequency is unknown: tangents follow from them, too.
 const BORDERED: f64 = 1e-5;
 /// Products after which a direction is taken as it is, …
-const MOST_PRODUCTS: usize = 400;
+pub(super) const MOST_PRODUCTS: usize = 400;
 /// … if it leaves no more than this.
 const USEFUL: f64 = 0.5;
 /// Tolerance of what damping couples within a product, against that of the whole.
@@ -35,6 +35,8 @@ pub(super) struct Products<'a> {
     pub(super) sizes: &'a [f64],
     /// Whether nothing corrects the direction.
     pub(super) fine: bool,
+    /// Products after which a direction is taken as it is.
+    pub(super) most: usize,
     pub(super) interrupted: Option<&'a dyn Fn() -> bool>,
 }
 
@@ -152,7 +154,7 @@ impl KrylovNewton {
             !products.interrupted.is_some_and(|ask| ask())
         };
         let mut solution = vec![0.0; right.len()];
-        let settings = KrylovSettings { tolerance, max_products: MOST_PRODUCTS };
+        let settings = KrylovSettings { tolerance, max_products: products.most };
         let report = gmres(product, &right, &mut solution, settings);
         // What the caller has ended is not a number.
         if report.residual.is_nan() || report.residual > USEFUL {
@@ -218,7 +220,7 @@ impl KrylovNewton {
             !products.interrupted.is_some_and(|ask| ask())
         };
         let mut solution = vec![0.0; size + 1];
-        let settings = KrylovSettings { tolerance: BORDERED, max_products: MOST_PRODUCTS };
+        let settings = KrylovSettings { tolerance: BORDERED, max_products: products.most };
         let report = gmres(product, &rhs, &mut solution, settings);
         if report.residual.is_nan() || report.residual > USEFUL {
             return None;

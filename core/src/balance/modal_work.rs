@@ -79,6 +79,22 @@ pub(super) fn of_step(compliance: &dyn Compliance, slots: f64, slipping: f64, co
     whole + PRODUCTS_OF_STEP * product
 }
 
+/// Products of a Newton step that takes so long, its laws left out \[ns\].
+pub(super) fn products_within(
+    time: f64,
+    compliance: &dyn Compliance,
+    slots: f64,
+    slipping: f64,
+    coupled: f64,
+) -> f64 {
+    let of = |contacts: f64| {
+        let modes = compliance.contact_modes();
+        modes.map_or(0.0, |modes| PER_OPERATION * modes.work(contacts, slots))
+    };
+    let tangents = if coupled > 1.0 { PER_ENTRY * slipping * coupled * slots * slots } else { 0.0 };
+    (time - 2.0 * of(compliance.contacts() as f64)) / (of(slipping) + tangents)
+}
+
 /// Whether the Jacobian of so many points that slip, among all, may be formed after all.
 pub(super) fn may_be_formed(compliance: &dyn Compliance, slots: usize, slipping: usize) -> bool {
     let all = compliance.contacts() * slots;
@@ -110,6 +126,8 @@ pub(super) struct ByProducts {
     pub(super) last: usize,
     /// Directions that they did not lead to.
     pub(super) failures: usize,
+    /// Most of a direction, if no Jacobian may be formed in their place.
+    pub(super) most: Option<usize>,
     /// Whether dense receptances have taken their place.
     pub(super) replaced: bool,
 }
