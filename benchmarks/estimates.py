@@ -4,11 +4,12 @@ Usage::
 
     python benchmarks/estimates.py
 
-Beams, chains with few and many contacts, damping that is not proportional, microslip, a stop, a
-cubic spring, a sampled law, nodes in a plane and in space, wedges and mistuned rings of which 1, 2
-or 4 contacts slip, with 1, 3, 9 and 15 harmonics: one frequency from nothing, a curve in steps of
-0.5 % whose solutions start from their neighbours, and one in steps of 0.1 %. The smallest times of
-runs on one thread. An estimate should never take longer than its solution.
+Beams, chains with few and many contacts, also of stiffnesses over two decades, damping that is not
+proportional, microslip, a stop, a cubic spring, a sampled law, nodes in a plane and in space,
+wedges and mistuned rings of which 1, 2 or 4 contacts slip, with 1, 3, 9 and 15 harmonics: one
+frequency from nothing, a curve in steps of 0.5 % whose solutions start from their neighbours, and
+one in steps of 0.1 %. The smallest times of runs on one thread. An estimate should never take
+longer than its solution.
 """
 
 from __future__ import annotations
@@ -30,8 +31,8 @@ POINTS = {0.1 / 19: 20, 1e-3: 40}
 """Numbers of points of the curves, by their relative step."""
 
 
-def chain(dofs: int, contacts: int, proportional: bool) -> ss.Model:
-    """Return a chain of unit masses with dampers to ground along it."""
+def chain(dofs: int, contacts: int, proportional: bool, decades: float = 0.5) -> ss.Model:
+    """Return a chain of unit masses with dampers to ground, of stiffnesses over some decades."""
     rng = np.random.default_rng(dofs)
     k = 10 ** rng.uniform(4.0, 4.5, dofs + 1)
     stiffness = np.diag(k[:-1] + k[1:]) - np.diag(k[1:-1], 1) - np.diag(k[1:-1], -1)
@@ -39,7 +40,9 @@ def chain(dofs: int, contacts: int, proportional: bool) -> ss.Model:
     damping = ss.ModalDamping(5e-3) if proportional else np.diag(rng.uniform(0.1, 2.0, dofs))
     dampers = [
         ss.Jenkins(
-            names[int(i)], stiffness=2e4 * rng.uniform(0.3, 3.0), slip_force=rng.uniform(0.3, 3.0)
+            names[int(i)],
+            stiffness=2e4 * 10 ** rng.uniform(-decades, decades),
+            slip_force=3.0 * 10 ** rng.uniform(-2.0 * decades, 0.0),
         )
         for i in np.linspace(0, dofs - 1, contacts)
     ]
@@ -95,6 +98,8 @@ def models() -> Iterator[tuple[str, ss.Model | ss.disk.MistunedDisk, float]]:
     yield "wedge, preloaded", wedge(normal_loads()), 200.0
     for dofs, contacts in ((40, 5), (100, 20), (200, 60), (300, 100)):
         yield f"chain {dofs}, {contacts} contacts", chain(dofs, contacts, True), 120.0
+    for dofs, contacts in ((40, 20), (60, 30)):
+        yield f"chain {dofs}, {contacts} over decades", chain(dofs, contacts, True, 1.0), 120.0
     for dofs, contacts in ((20, 3), (60, 5), (150, 5)):
         yield f"not proportional {dofs}, {contacts}", chain(dofs, contacts, False), 120.0
     for blades in (12, 24, 48):

@@ -279,7 +279,7 @@ def test_an_unstable_motion_has_another_one_beside_it_and_that_is_told():
 
 
 def test_contacts_decide_how_many_harmonics_stability_takes():
-    """The observed DOF is right to 1.4e-4 with 7 harmonics; the contact is not, and its motion is unstable."""
+    """The observed DOF is right to 1.4e-4 with 7 harmonics, the contact is not, and not stable."""
     mass = [0.724, 1.24, 0.881, 0.414, 1.04, 2.16]
     stiffness = np.diag([3005.0, 11016, 12072, 5919, 5279, 932])
     for i, j, spring in [(0, 1, 845), (1, 2, 8773), (1, 4, 1374), (2, 3, 2923), (3, 4, 2761)]:
