@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from stickslip.analyses.fit_parameters import (
     require_distinct,
     require_unit,
 )
-from stickslip.analyses.misfit import Misfit
+from stickslip.analyses.misfit import Misfit, robust
 from stickslip.analyses.profile import covariance, covariance_ends, profile_ends
 from stickslip.analyses.run import Progress, Run, share
 from stickslip.checks import brief, members
@@ -115,7 +115,7 @@ def fit(
             interrupted = True
             result = _result(search, settings, start, None, interrupted=True)
         if interrupted:
-            return run.ended(result, f"{misfit.evaluations} evaluations")
+            return run.ended(result, f"{search.evaluations} evaluations")
         return run.completed(result, "fit")
 
 
@@ -123,46 +123,41 @@ class _Search:
     """The least misfit, from several starts."""
 
     def __init__(self, misfit: Misfit, settings: FitSettings) -> None:
-        self.misfit, self._settings = misfit, settings
+        self.misfit, self._starts = misfit, _starts(len(misfit.parameters), settings.starts)
+        self._coarse = misfit.coarse(_COARSE)
         self.best: Float | None = None
         self.minima: list[tuple[float, Float]] = []
         """Misfit and place of the minima that were found, the least first."""
 
+    @property
+    def evaluations(self) -> int:
+        """How often all measurements were predicted."""
+        return self._coarse.evaluations + self.misfit.evaluations
+
     def run(self, progress: Progress) -> None:
-        """Look from all starts with few harmonics, and follow the best with all."""
+        """Look from all starts with few harmonics, and follow the best with all.
+
+        A resonance that passes from frequency to frequency of a curve makes the sum of the squares
+        a row of valleys. The robust sum has few, and the deepest beside that of the squares. Where
+        the model does not fit, its least squares may lie elsewhere: without a known noise they are
+        looked for at once, and with it where nothing lies within the noise.
+        """
         tell = progress if progress is not None else lambda _: None
-        coarse = self.misfit.coarse(_COARSE)
-        starts = _starts(len(coarse.parameters), self._settings.starts)
-        heights = []
-        for number, one in enumerate(starts):
-            here = coarse.at(one)
-            found = any(test.solved.any() for test in here.predictions)
-            heights.append(here.misfit if found else np.inf)
-            tell(0.3 * (number + 1) / len(starts))
-        if not np.isfinite(min(heights)):
-            raise ModelError(
-                "fit: no prediction could be solved from any start; narrow the bounds of the "
-                "parameters, or look at the forced response of the model"
-            )
-        self.best = starts[int(np.argmin(heights))]
+        order, scale = self._compared(tell)
+        self.best = order[0]
         ends: list[tuple[float, Float]] = []
-        order = np.argsort(heights)[:_FOLLOWED]
-        for at in order:
-            ends.append(coarse.least(starts[at]))
-            self.best = min(ends, key=lambda one: one[0])[1]
-            least = min(ends, key=lambda one: one[0])[0]
-            agreed = sum(np.abs(end - self.best).max() < _SAME for _, end in ends)
-            if agreed >= _AGREED and self._is_enough(least):
+        for one in (scale, None) if self.misfit.noise_known else (None, scale):
+            agreed = self._follow(order, one, ends)
+            if agreed and self._is_enough(ends[0][0]):
                 break
-        ends.sort(key=lambda one: one[0])
         tell(0.6)
         distinct = [
             end
             for place, (_, end) in enumerate(ends)
             if all(np.abs(end - other).max() > _SAME for _, other in ends[:place])
-        ]
+        ][:_FOLLOWED]
         # Few harmonics may have no minimum where all have one: starts are followed with all, too.
-        for number, end in enumerate([*distinct, *(starts[at] for at in order)], 1):
+        for number, end in enumerate([*distinct, *order], 1):
             self.minima.append(self.misfit.least(end))
             least = min(one for one, _ in self.minima)
             if number >= min(_AGREED, len(distinct)) and self._is_enough(least):
@@ -170,6 +165,44 @@ class _Search:
         self.minima.sort(key=lambda one: one[0])
         self.best = self.minima[0][1]
         tell(1.0)
+
+    def _follow(
+        self, starts: Iterable[Float], scale: float | None, ends: list[tuple[float, Float]]
+    ) -> bool:
+        """Follow starts until some lead to the same minimum; return whether they did.
+
+        The minima join the `ends`, the least first.
+        """
+        own: list[tuple[float, Float]] = []
+        for start in starts:
+            own.append(self._coarse.least(start, scale=scale))
+            ends.append(own[-1])
+            ends.sort(key=lambda one: one[0])
+            self.best = ends[0][1]
+            least = min(own, key=lambda one: one[0])[1]
+            if sum(np.abs(end - least).max() < _SAME for _, end in own) >= _AGREED:
+                return True
+        return False
+
+    def _compared(self, tell: Callable[[float], None]) -> tuple[list[Float], float]:
+        """Return the best starts, the best first, and the size of a usual residual of them all."""
+        residuals, found = [], []
+        for number, start in enumerate(self._starts, 1):
+            here = self._coarse.at(start)
+            residuals.append(here.residuals)
+            found.append(any(test.solved.any() for test in here.predictions))
+            tell(0.3 * number / len(self._starts))
+        if not any(found):
+            raise ModelError(
+                "fit: no prediction could be solved from any start; narrow the bounds of the "
+                "parameters, or look at the forced response of the model"
+            )
+        scale = float(np.median(np.abs(residuals))) or 1.0
+        heights = [
+            robust(one, scale) if known else np.inf
+            for one, known in zip(residuals, found, strict=True)
+        ]
+        return [self._starts[at] for at in np.argsort(heights)[:_FOLLOWED]], scale
 
     def _is_enough(self, least: float) -> bool:
         """Whether no better minimum need be there: with a known noise, the model fits within it."""
@@ -250,7 +283,7 @@ def _result(
         names=_names(misfit.measured),
         interrupted=interrupted,
         timings={"total": time.perf_counter() - start},
-        counters={"evaluations": misfit.evaluations},
+        counters={"evaluations": search.evaluations},
         diagnostics=fit_assumptions(arrays, settings, noise_known=known, freedom=freedom),
     )
 

@@ -44,6 +44,11 @@ class Evaluation:
         )
 
 
+def robust(residuals: Float, scale: float) -> float:
+    """Return the sum of the squares that counts residuals far beyond a scale by their logarithm."""
+    return float(scale**2 * np.log1p((residuals / scale) ** 2).sum())
+
+
 class Misfit:
     """The misfit of measurements, at parameters that are scaled to 0 to 1.
 
@@ -102,8 +107,13 @@ class Misfit:
         self._last = np.array(scaled), made
         return made
 
-    def least(self, start: Float, free: Bool | None = None) -> tuple[float, Float]:
-        """Return the least misfit that a start leads to and its place, with only these free."""
+    def least(
+        self, start: Float, free: Bool | None = None, *, scale: float | None = None
+    ) -> tuple[float, Float]:
+        """Return the misfit that a start leads to and its place, with only these free.
+
+        It is the least one; or with a `scale` that at the least `robust` sum.
+        """
         from scipy.optimize import least_squares
 
         mask = np.ones(start.size, bool) if free is None else free
@@ -126,5 +136,8 @@ class Misfit:
             bounds=(0.0, 1.0),
             xtol=1e-8,
             max_nfev=self.settings.max_evaluations,
+            loss="linear" if scale is None else "cauchy",
+            f_scale=scale or 1.0,
         )
-        return 2.0 * float(found.cost), whole(found.x)
+        end = whole(found.x)
+        return self.at(end).misfit, end
