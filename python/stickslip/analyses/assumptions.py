@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from stickslip import _core
-from stickslip.analyses.doubts import doubts, is_unique, rigid_contacts, structure_doubts
+from stickslip.analyses.doubts import doubts, few_modes, is_unique, rigid_contacts, structure_doubts
 from stickslip.analyses.texts import TEXTS, told
 from stickslip.checks import listed
 from stickslip.model import Coulomb, Model, StructuralDamper, natural_frequencies
@@ -69,6 +69,7 @@ def balance_assumptions(
                 settings.span is None and _two_frequencies(arrays, asked),
                 _observed(model, dofs),
                 *doubts(model),
+                few_modes(model, arrays.omega),
                 _truncation(dofs, arrays, single=single),
                 rigid_contacts(model, arrays),
                 missed_tolerances(arrays.status, "points"),
@@ -102,6 +103,7 @@ def orbit_assumptions(
                 settings.span is None and _two_frequencies(arrays, asked),
                 _observed(model, dofs),
                 *doubts(model),
+                few_modes(model, arrays.omega),
                 missed_tolerances(arrays.status, "points"),
             )
         )
@@ -134,6 +136,7 @@ def transient_assumptions(
             and told("kept-periods", periods=settings.keep),
             _observed(model, dofs),
             *doubts(model),
+            few_modes(model, settings.omega),
         )
     )
 

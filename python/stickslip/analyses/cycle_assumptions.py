@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from stickslip import _core
-from stickslip.analyses.doubts import structure_doubts
+from stickslip.analyses.doubts import few_modes, structure_doubts
 from stickslip.analyses.texts import told
 from stickslip.model import Model
 from stickslip.results.diagnostic import Diagnostic, present
@@ -44,6 +44,7 @@ def cycle_assumptions(
             ),
             settings.method == "newton" and _truncation(model, settings, arrays),
             *structure_doubts(model),
+            few_modes(model, arrays.omega, forced=False),
         )
     )
 

@@ -186,6 +186,7 @@ def spinning(
 
     def at(speed: float) -> Structure:
         stiffness = structure.stiffness + speed**2 * added
-        return Structure(structure.mass, stiffness, structure.damping, structure.dofs)
+        stiffened = Structure(structure.mass, stiffness, structure.damping, structure.dofs)
+        return stiffened.made_of(structure)
 
     return at

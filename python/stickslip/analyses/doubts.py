@@ -7,7 +7,9 @@ stiff that a motion with them may not be found.
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from stickslip.analyses.arguments import highest_harmonic
 from stickslip.analyses.texts import told
 from stickslip.checks import listed
 from stickslip.damper.damper import LEFT, RIGHT
@@ -31,6 +33,8 @@ _RIGID_BODY = 1e-8
 """Squared natural frequencies below this share of the highest are those of rigid motion."""
 _OTHER = 0.1
 """Share by which a damping ratio may differ from that of its law."""
+_USUAL = 2.0
+"""Highest frequency of the modes that are kept in a reduction, over the highest of interest."""
 RIGID = 1e5
 """Stiffness of a contact, over that of the structure at its DOFs, up to which motions are found."""
 
@@ -99,6 +103,20 @@ def _wave_damping(model: Model) -> Diagnostic | None:
     if abs(ratio - meant) <= _OTHER * abs(meant):
         return None
     return told("wave-damping", law=meant, ratio=ratio, diameter=model.diameter(harmonic))
+
+
+def few_modes(model: Model, omega: ArrayLike, *, forced: bool = True) -> Diagnostic | None:
+    """Say that frequencies lie beyond those up to which a reduced structure is accurate.
+
+    They are those of the forces, or of a motion by itself.
+    """
+    order = highest_harmonic(model) if forced else 1
+    highest = order * float(np.nanmax(omega, initial=0.0))
+    limit = model.structure.accurate_to
+    if highest <= limit:
+        return None
+    what = f"harmonic {order} of the forces goes up to" if order > 1 else "omega goes up to"
+    return told("few-modes", omega=highest, limit=limit, _what=what, _enough=_USUAL * highest)
 
 
 def mistuning_unit(deviation: float, what: str) -> Diagnostic | None:

@@ -189,4 +189,5 @@ def _damped(structure: Structure, key: str, value: float) -> Structure:
         reason = unknown("parameter", key, known) if known else "give ModalDamping or Rayleigh"
         raise ModelError(f"the damping of the structure is {made}; {reason}")
     changed = replace(law, **{key: value})  # type: ignore[arg-type]
-    return Structure(structure.mass, structure.stiffness, changed, structure.dofs)
+    damped = Structure(structure.mass, structure.stiffness, changed, structure.dofs)
+    return damped.made_of(structure)

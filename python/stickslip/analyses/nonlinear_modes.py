@@ -6,7 +6,7 @@ import numpy as np
 
 from stickslip import _core
 from stickslip.analyses.arguments import require_lowest
-from stickslip.analyses.doubts import structure_doubts
+from stickslip.analyses.doubts import few_modes, structure_doubts
 from stickslip.analyses.mode_bounds import mode_bounds
 from stickslip.analyses.run import Progress, Run, refusals
 from stickslip.analyses.texts import told
@@ -103,7 +103,7 @@ def nonlinear_modes(
             diagnostics=(
                 *_assumptions(kept, arrays, solution, slipping),
                 *bounds.told,
-                *present(structure_doubts(model)),
+                *present((*structure_doubts(model), few_modes(model, arrays.omega, forced=False))),
             ),
         )
         return run.ended(result, f"{result.omega.size} amplitudes")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from stickslip.analyses.assumptions import LARGE_ERROR, bounds_of, direct_assumption
-from stickslip.analyses.doubts import doubts, mistuning_unit, structure_doubts
+from stickslip.analyses.doubts import doubts, few_modes, mistuning_unit, structure_doubts
 from stickslip.analyses.texts import told
 from stickslip.checks import listed
 from stickslip.model import Model
@@ -32,6 +32,7 @@ def damper_assumptions(
             _truncation_of_peaks(settings, arrays),
             settings.bounds and bounds_of(arrays, "bounds/peaks"),
             *doubts(model),
+            few_modes(model, arrays.omega),
             direct_assumption(model),
         )
     )
@@ -58,6 +59,7 @@ def mistuning_assumptions(
             _truncation_of_factors(arrays, dofs),
             _deviations(arrays),
             *structure_doubts(disk),
+            few_modes(disk, arrays.omega),
         )
     )
 

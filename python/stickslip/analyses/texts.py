@@ -114,6 +114,9 @@ TEXTS = {
     "not damp either may not be the only one.",
     "negative-damping": "The damping is negative for some motion: the solution may be unstable or "
     "not the only one.",
+    "few-modes": "The structure was reduced with modes that make it accurate up to {limit:.6g} "
+    "rad/s; {_what} {omega:.6g} rad/s. Beyond, natural frequencies are more than 1 % too high, and "
+    "resonances may be missing. Keep more modes: craig_bampton(..., omega={_enough:.4g}).",
     "negative-stiffness": "The stiffness matrix has a negative eigenvalue, mostly of dof {dof!r}: "
     "without its contacts the structure is statically unstable, and motions may be too. Check "
     "signs and supports, unless it is meant.",

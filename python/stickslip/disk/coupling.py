@@ -224,7 +224,7 @@ def cyclic_sector(structure: Structure, boundary: Mapping[str, str]) -> tuple[St
     }
     interface = Interface(**{name: own.T @ matrix @ following for name, matrix in matrices.items()})
     law = structure.damping_law if isinstance(structure.damping_law, Rayleigh) else None
-    return Structure.of_law(**blocks, dofs=kept, law=law), interface
+    return Structure.of_law(**blocks, dofs=kept, law=law).made_of(structure), interface
 
 
 def _checked(structure: Structure, boundary: object) -> dict[str, str]:

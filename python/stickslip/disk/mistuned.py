@@ -63,7 +63,7 @@ class MistunedDisk(Model):
         set_fields(self, disk=disk, blades=sectors)
         own = _contacts(disk)
         super().__init__(
-            _ring(disk, sectors, (), ()).assembled(disk.structure.dofs),
+            _ring(disk, sectors, (), ()).assembled(disk.structure.dofs).made_of(*sectors),
             own if contacts is None else contacts,
             _forces(disk) if forces is None else forces,
         )
@@ -164,7 +164,7 @@ def deviating(
         blade = Structure(*matrices, damping, sector.dofs)
         # Mass and stiffness deviate as wholes, which leaves the mode shapes as they are.
         set_fields(blade, proportional=blade.proportional or sector.proportional)
-        made.append(blade)
+        made.append(blade.made_of(sector))
     return tuple(made)
 
 

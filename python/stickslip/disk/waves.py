@@ -149,7 +149,7 @@ class AerodynamicWaves:
             own.stiffness + added,
             own.damping + fed,
             own.dofs,
-        )
+        ).made_of(own)
         return self.disk._like(
             structure=structure, forces=(), engine_order=wave.diameter, engine_orders=None
         )

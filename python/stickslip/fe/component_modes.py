@@ -130,9 +130,8 @@ def craig_bampton(
                 f"{np.sqrt(squares[0]):.6g} rad/s; give a higher one, or modes=1"
             )
         squares, shapes = squares[:wanted], shapes[:, :wanted]
-    return Reduction(
-        M, K, rows, names, kept, constraint, shapes, squares, (skew_mass, skew_stiffness)
-    )
+    asymmetry = skew_mass, skew_stiffness
+    return Reduction(M, K, rows, names, kept, constraint, shapes, squares, asymmetry, factor)
 
 
 def _row_names(dofs: Iterable[str] | None, size: int) -> tuple[str, ...] | None:

@@ -15,6 +15,8 @@ from stickslip.units import physical_number
 
 MASSLESS = 1e-12
 """Inertia below this part of the largest is none."""
+RIGID = 1e-3
+"""A mode below this part of the first elastic one is a rigid-body mode."""
 
 
 class Reduced(Protocol):

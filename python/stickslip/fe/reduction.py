@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.checks import Matrix, MatrixLike, constant, whole_number
+from stickslip.checks import Matrix, MatrixLike, constant, set_fields, whole_number
 from stickslip.errors import ModelError
-from stickslip.fe.reduced_modes import natural_modes, shift_below, springs_of
+from stickslip.fe.accuracy import accurate_to
+from stickslip.fe.reduced_modes import RIGID, natural_modes, shift_below, springs_of
 from stickslip.fe.sparse import CscArray, Factor, lowest_modes
 from stickslip.model import Force
 from stickslip.model.damping import DampingLaw
@@ -37,6 +38,10 @@ class Reduction:
         Natural frequencies of the fixed-interface modes [rad/s].
     size : int
         N, degrees of freedom of the full structure.
+    accurate_to : float
+        Angular frequency up to which natural frequencies with a free boundary are less than 1 % too
+        high, as the modes that were left out tell [rad/s]; infinite if all are. Results beyond it
+        say so.
     """
 
     def __init__(
@@ -50,6 +55,7 @@ class Reduction:
         shapes: NDArray[np.float64],
         squares: NDArray[np.float64],
         asymmetry: tuple[float, float],
+        factor: Factor,
     ) -> None:
         self.full_mass, self.full_stiffness = mass, stiffness
         self.row_names, self.asymmetry = row_names, asymmetry
@@ -70,6 +76,7 @@ class Reduction:
         M[kept:, kept:] = np.eye(len(squares))
         self.mass: Matrix = 0.5 * (M + M.T)
         self.stiffness: Matrix = 0.5 * (K + K.T)
+        self.accurate_to = accurate_to(self, factor)
         self._freeze()
 
     def _freeze(self) -> None:
@@ -122,7 +129,9 @@ class Reduction:
 
         Its viscous damping is given as that of `Structure`.
         """
-        return Structure(self.mass, self.stiffness, damping, self.dofs)
+        made = Structure(self.mass, self.stiffness, damping, self.dofs)
+        set_fields(made, accurate_to=self.accurate_to)
+        return made
 
     def recover(self, reduced: ArrayLike) -> NDArray[np.generic]:
         """Return the motion of all degrees of freedom, x = T q, shape (..., N).
@@ -183,7 +192,7 @@ class Reduction:
             (self.size, len(self.boundary), self.omega.size),
             self.asymmetry,
             self.decoupling,
-            int((omegas < _RIGID * self.omega[0]).sum()),
+            int((omegas < RIGID * self.omega[0]).sum()),
             *self._translations(),
             omegas,
             np.sqrt(np.clip(own[:count], 0.0, None)),
@@ -239,6 +248,7 @@ def record_of(reduction: Reduction) -> Record:
         "title": "Structure reduced to component modes",
         "decoupling": reduction.decoupling,
         "asymmetry": np.array(reduction.asymmetry),
+        "accurate_to": reduction.accurate_to,
     }
     return Record(attrs=about).assign(
         {
@@ -264,6 +274,7 @@ def reduction_of(dataset: Stored) -> Reduction:
     made.row_names = tuple(map(str, dataset["row_names"].values)) if named else None
     first, second = map(float, dataset.attrs["asymmetry"])
     made.asymmetry, made.decoupling = (first, second), float(dataset.attrs["decoupling"])
+    made.accurate_to = float(dataset.attrs["accurate_to"])
     shapes = made.mass.shape, made.stiffness.shape, made.rows.shape
     if shapes != ((count, count), (count, count), (len(made.boundary),)):
         raise ValueError(f"matrices of shape {shapes[0]} for {count} columns of the basis")
@@ -309,9 +320,6 @@ def _dofs(boundary: tuple[str, ...], modes: int) -> tuple[str, ...]:
 
 _PANEL = 1 << 26
 """Bytes that are worked on at a time: freed parts below 32 MB may stay with the allocator."""
-
-_RIGID = 1e-3
-"""A mode below this part of the first elastic one is a rigid-body mode."""
 
 
 @dataclass(frozen=True, eq=False)

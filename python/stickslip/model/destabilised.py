@@ -49,7 +49,7 @@ def destabilised(
     damping = own.damping + added
     proportional = own.proportional and is_proportional(negative_damping)
     structure = Structure.of_law(own.mass, own.stiffness, damping, own.dofs, None, proportional)
-    return model.with_structure(structure)
+    return model.with_structure(structure.made_of(own))
 
 
 def is_proportional(damping: MatrixLike | DampingLaw) -> bool:

@@ -80,6 +80,9 @@ class Structure(Dofs):
     proportional: bool
     """Whether the damping couples none of the structure's modes because of what it was made of: a
     law, or parts of `join` that each have one. Of a matrix rounding decides whether it does."""
+    accurate_to: float
+    """Angular frequency up to which it is as right as what it was reduced from [rad/s], see
+    `Reduction`; infinite where that is not known."""
 
     def __init__(
         self,
@@ -108,7 +111,7 @@ class Structure(Dofs):
         law = damping if isinstance(damping, DampingLaw) else None
         proportional = law.proportional if law is not None else not C.any()
         set_fields(self, mass=M, stiffness=K, damping=C, dofs=names)
-        set_fields(self, damping_law=law, proportional=proportional)
+        set_fields(self, damping_law=law, proportional=proportional, accurate_to=np.inf)
 
     def __repr__(self) -> str:
         shown = ", ".join(self.dofs[:_SHOWN]) + (", ..." if len(self) > _SHOWN else "")
@@ -117,7 +120,8 @@ class Structure(Dofs):
     def __reduce__(self) -> tuple[object, ...]:
         # Unpickled arrays would be writeable; going through the constructor makes them constant.
         matrices = self.mass, self.stiffness, self.damping
-        return Structure.of_law, (*matrices, self.dofs, self.damping_law, self.proportional)
+        how = self.damping_law, self.proportional, self.accurate_to
+        return Structure.of_law, (*matrices, self.dofs, *how)
 
     @cached_property
     def is_damped(self) -> bool | None:
@@ -148,6 +152,7 @@ class Structure(Dofs):
         dofs: Iterable[str] | None,
         law: DampingLaw | None,
         proportional: bool | None = None,
+        accurate_to: float = np.inf,
     ) -> Structure:
         """Return a structure with a damping matrix that a law made, to the last bit.
 
@@ -158,7 +163,13 @@ class Structure(Dofs):
         if proportional is None and law is not None:
             proportional = law.proportional
         set_fields(made, damping_law=law, proportional=made.proportional or bool(proportional))
+        set_fields(made, accurate_to=accurate_to)
         return made
+
+    def made_of(self, *parts: Structure) -> Structure:
+        """Return it, as accurate as the least accurate structure that it is made of."""
+        set_fields(self, accurate_to=min(one.accurate_to for one in parts))
+        return self
 
 
 def join(structures: Mapping[str, Structure], couplings: Iterable[Coupling] = ()) -> Structure:
@@ -219,7 +230,7 @@ def coupled(structure: Structure, couplings: Iterable[Coupling]) -> Structure:
             raise ModelError(f"{entry}{error}", study=f"{entry}{error.study}") from None
         stiffness += spring.stiffness * one
         damping += spring.damping * one
-    return Structure(structure.mass, stiffness, damping, structure.dofs)
+    return Structure(structure.mass, stiffness, damping, structure.dofs).made_of(structure)
 
 
 def side_by_side(structures: Iterable[Structure], dofs: Iterable[str]) -> Structure:
@@ -232,7 +243,8 @@ def side_by_side(structures: Iterable[Structure], dofs: Iterable[str]) -> Struct
             block = slice(start, start + len(part))
             whole[block, block] = getattr(part, name)
     proportional = all(part.proportional for part in parts)
-    return Structure.of_law(**blocks, dofs=dofs, law=None, proportional=proportional)
+    matrices = blocks["mass"], blocks["stiffness"], blocks["damping"]
+    return Structure.of_law(*matrices, dofs, None, proportional).made_of(*parts)
 
 
 def _names(dofs: Iterable[str] | None, size: int) -> tuple[str, ...]:

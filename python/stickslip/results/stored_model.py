@@ -102,7 +102,9 @@ def _read_mistuned(dataset: Stored) -> MistunedDisk:
     if "blade_proportional" in dataset:  # files of version 0.1 have none
         known = dataset["blade_proportional"].values
     blades = [
-        Structure.of_law(m, k, c, disk.structure.dofs, None, bool(proportional))
+        Structure.of_law(m, k, c, disk.structure.dofs, None, bool(proportional)).made_of(
+            disk.structure
+        )
         for m, k, c, proportional in zip(*stacks, known, strict=True)
     ]
     return MistunedDisk(disk, blades, *parts_of(dataset))
@@ -122,6 +124,9 @@ def _structure_variables(structure: Structure) -> dict[Hashable, object]:
         for name, (unit, meaning) in _MATRICES.items()
     }
     variables["row"] = labels("row", structure.dofs, "degree of freedom of the structure")
+    if np.isfinite(structure.accurate_to):
+        said = {"units": "rad/s", "long_name": "frequency up to which the structure is accurate"}
+        variables["accurate_to"] = ((), structure.accurate_to, said)
     law = structure.damping_law
     if law is None and structure.proportional and structure.damping.any():
         said = {"units": "1", "long_name": "damping known to couple no modes"}
@@ -138,6 +143,7 @@ def _structure(dataset: Stored) -> Structure:
         list(map(str, dataset["row"].values)),
         law_from_spec(laws[0]) if laws else None,
         "damping_proportional" in dataset or None,
+        float(dataset["accurate_to"].values) if "accurate_to" in dataset else np.inf,
     )
 
 
