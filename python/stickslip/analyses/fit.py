@@ -148,7 +148,7 @@ class _Search:
         ends: list[tuple[float, Float]] = []
         for one in (scale, None) if self.misfit.noise_known else (None, scale):
             agreed = self._follow(order, one, ends)
-            if agreed and self._is_enough(ends[0][0]):
+            if (agreed or self.misfit.noise_known) and self._is_enough(ends[0][0]):
                 break
         tell(0.6)
         distinct = [

@@ -17,6 +17,10 @@ from stickslip.settings.fit import FitSettings
 
 _INSIDE = 1e-9
 """Distance of starts from the bounds."""
+_SETTLED = 1e-8
+"""Relative change of place and misfit at which a least misfit is found."""
+_BESIDE = 1e-6
+"""That at which a least robust sum is found, from which the least misfit is looked for."""
 
 
 class Evaluation:
@@ -134,7 +138,8 @@ class Misfit:
             np.clip(start[mask], _INSIDE, 1.0 - _INSIDE),
             jac=jacobian,
             bounds=(0.0, 1.0),
-            xtol=1e-8,
+            xtol=_SETTLED if scale is None else _BESIDE,
+            ftol=_SETTLED if scale is None else _BESIDE,
             max_nfev=self.settings.max_evaluations,
             loss="linear" if scale is None else "cauchy",
             f_scale=scale or 1.0,
