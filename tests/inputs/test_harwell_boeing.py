@@ -178,3 +178,52 @@ def test_a_line_twice_or_lost_is_refused_wherever_it_stands(tmp_path):
                 read_matrix(file)
     write(file, "".join(lines) + "\n  \n")  # blank lines at the end hold nothing
     np.testing.assert_array_equal(read_matrix(file), sound)
+
+
+def written(kind, values):
+    """Return the file of a diagonal matrix, three numbers in a line of columns of 20 characters."""
+    size = len(values)
+    integers = [
+        "".join(f"{one:5d}" for one in row) for row in (range(1, size + 2), range(1, size + 1))
+    ]
+    fields = [f"{one:20.12E}" if kind in "DE" else f"{one:20.8f}" for one in values]
+    lines = ["".join(fields[at : at + 3]) for at in range(0, size, 3)]
+    heads = f"{2 + len(lines):14d}{1:14d}{1:14d}{len(lines):14d}"
+    sizes = "".join(f"{one:14d}" for one in (size, size, size, 0))
+    format_ = f"({size + 1}I5) ({size}I5) (3{kind}20.{12 if kind in 'DE' else 8})"
+    text = "\n".join(["title", heads, f"RUA{'':11}{sizes}", format_, *integers, *lines]) + "\n"
+    return text.replace("E+", f"{kind}+") if kind == "D" else text
+
+
+@pytest.mark.parametrize("kind", ["E", "D", "F"])
+@pytest.mark.parametrize("size", [3, 8])
+def test_a_number_that_is_cut_anywhere_is_refused(tmp_path, kind, size):
+    values = np.geomspace(1.2345678, 98765.43, size)
+    text = written(kind, values)
+    file = write(tmp_path / "k.rua", text)
+    np.testing.assert_allclose(read_matrix(file).diagonal(), values, rtol=1e-7)
+    lines = text.splitlines()
+    # Nothing tells a number without an exponent from its beginning where no other line shows it.
+    for number in range(6, len(lines) if kind != "F" or size > 3 else 6):
+        for cut in range(1, 20):
+            damaged = [*lines]
+            damaged[number] = damaged[number][:-cut]
+            with pytest.raises(ModelError, match="k.rua"):
+                read_matrix(write(file, "\n".join(damaged) + "\n"))
+
+
+@pytest.mark.parametrize("plain", ["0.0", "1.5", "  2.500000000000", "0.000000000000    "])
+def test_numbers_without_an_exponent_in_full_columns_are_read(tmp_path, plain):
+    text = written("E", [1.0, 2.0, 3.0, 4.0])
+    lines = text.splitlines()
+    lines[-2] = lines[-2][:40] + f"{plain:>20}"
+    lines[-1] = f"{plain:>20}"
+    read = read_matrix(write(tmp_path / "k.rua", "\n".join(lines) + "\n"))
+    assert read.diagonal().tolist() == [1.0, 2.0, float(plain), float(plain)]
+
+
+def test_columns_of_numbers_without_exponents_are_read(tmp_path):
+    lines = written("E", [1.0, 2.0, 3.0, 4.0]).splitlines()[:-2]
+    text = "\n".join([*lines, "1.0 0.5 3.0", "0.25"]) + "\n"
+    read = read_matrix(write(tmp_path / "k.rua", text))
+    assert read.diagonal().tolist() == [1.0, 0.5, 3.0, 0.25]

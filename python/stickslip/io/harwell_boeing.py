@@ -20,6 +20,9 @@ from stickslip.io.numbers import real_field, require_whole_numbers, whole_field
 from stickslip.io.source import at_line, read_text
 
 _CUT_EXPONENT = re.compile(r"[EeDd][+-]?\d$")
+_POWER = re.compile(r"[EeDd]|[0-9.][+-]")
+_NUMBER = re.compile(r"[+-]?[0-9.]+(?:[EeDd][+-]?[0-9]+|[+-][0-9]{3,})?")
+"""A number in columns that touch: the exponent of three digits or more may have no letter."""
 _FORMAT = re.compile(
     r"\(\s*(?P<scale>[0-9]+\s*P\s*,?\s*)?(?P<repeat>[0-9]*)\s*(?P<group>\(?)\s*(?P<kind>[IEDFG])"
     r"\s*(?P<width>[0-9]+)",
@@ -44,13 +47,14 @@ class _Columns:
 
     repeat: int
     width: int
+    kind: str
 
     @classmethod
     def parse(cls, written: str) -> _Columns:
         match = _FORMAT.match(written)
         if match is None or (match["scale"] and match["kind"].upper() == "F"):
             raise ValueError(f"unsupported number format {written!r}")
-        columns = cls(int(match["repeat"] or 1), int(match["width"]))
+        columns = cls(int(match["repeat"] or 1), int(match["width"]), match["kind"].upper())
         if not (columns.repeat and columns.width):
             raise ValueError(f"unsupported number format {written!r}")
         return columns
@@ -61,6 +65,7 @@ class _Columns:
 
     def numbers(self, block: _Block, count: int, read: Callable[[str], Any]) -> Iterator[Any]:
         """Read `count` numbers from the lines that they fill."""
+        self._require_whole(block, count)
         left = count
         for number, line in enumerate(block.lines, block.first):
             expected = min(self.repeat, left)
@@ -77,6 +82,28 @@ class _Columns:
                 read_here = [read(word) for word in words]
             yield from read_here
             left -= expected
+
+    def _require_whole(self, block: _Block, count: int) -> None:
+        """Refuse lines that end inside a number, as far as the other lines show it.
+
+        Programs write to the end of every column, and in a format with exponents one in all
+        numbers or in none. G writes blanks behind numbers without one.
+        """
+        sizes = [self.width * min(self.repeat, count - n * self.repeat) for n in range(count)]
+        lines = [line.rstrip() for line in block.lines]
+        short = [n for n, line in enumerate(lines) if len(line) < sizes[n]]
+        if self.kind in "DE":
+            numbers = [_NUMBER.findall(line) for line in lines]
+            powers = [[bool(_POWER.search(one)) for one in line] for line in numbers]
+            short = [n for n in short if not all(powers[n][-1:])]
+            bare = sum(map(len, powers)) - sum(map(sum, powers))
+            known = bare == len(short) and sum(map(sum, powers)) > bare
+        else:
+            full = sum(len(line) == size for line, size in zip(lines, sizes, strict=False))
+            known = self.kind != "G" and full > len(short)
+        for n in short if known else ():
+            with at_line(block.first + n):
+                raise ValueError(f"{lines[n][-26:]!r} ends inside a number; the file is not whole")
 
     def integers(self, block: _Block, count: int) -> NDArray[np.int64]:
         return np.fromiter(self.numbers(block, count, whole_field), np.int64, count)
