@@ -373,3 +373,30 @@ def test_exact_orbits_beside_a_resonance_without_bound():
     damped = ss.Structure(np.eye(3), stiffness, ss.ModalDamping(1e-3), ["a", "b", "c"])
     model = ss.Model(damped, [damper], [ss.Force("b", 30.0)])
     assert np.isfinite(ss.exact_response(model, np.linspace(70.0, 80.0, 21)).peak("b").amplitude)
+
+
+@pytest.mark.parametrize("omega", [SPAN, np.linspace(*SPAN, 9)], ids=["range", "grid"])
+@pytest.mark.parametrize("analysis", [ss.forced_response, ss.exact_response])
+def test_a_curve_names_the_resonance(analysis, omega, tmp_path):
+    model = undamped([BOUNDED["jenkins"](2.0)], 1e3)
+    natural = ss.natural_frequencies(undamped([], 1e3))[0]
+    curve = analysis(model, omega)
+    curve.save(tmp_path / "curve.nc")
+    for one in (curve, ss.load(tmp_path / "curve.nc")):
+        (said,) = [told for told in one.diagnostics if told.code == "unbounded-resonance"]
+        assert said.severity == "caution"
+        assert said.data["omega"] == pytest.approx(natural, rel=1e-9)
+        assert f"{natural:.6g} rad/s" in said.text
+        assert "'a', 'b'" in said.text
+    bounded = analysis(undamped([BOUNDED["jenkins"](40.0)], 1e3), omega)
+    assert not any(told.code == "unbounded-resonance" for told in bounded.diagnostics)
+
+
+@pytest.mark.parametrize("analysis", [ss.forced_response, ss.exact_response])
+def test_a_resonance_that_is_given_is_named(analysis):
+    model = undamped([BOUNDED["jenkins"](2.0)], 1e3)
+    natural = ss.natural_frequencies(undamped([], 1e3))[0]
+    for at in (natural, np.nextafter(natural, 0.0), np.nextafter(natural, np.inf)):
+        assert "unbounded-resonance" in [told.code for told in analysis(model, [at]).diagnostics]
+    below = analysis(model, [0.9 * natural])
+    assert "unbounded-resonance" not in [told.code for told in below.diagnostics]

@@ -208,7 +208,7 @@ def test_a_number_that_is_cut_anywhere_is_refused(tmp_path, kind, size):
         for cut in range(1, 20):
             damaged = [*lines]
             damaged[number] = damaged[number][:-cut]
-            with pytest.raises(ModelError, match="k.rua"):
+            with pytest.raises(ModelError, match=r"k\.rua"):
                 read_matrix(write(file, "\n".join(damaged) + "\n"))
 
 

@@ -8,7 +8,14 @@ from dataclasses import replace
 import numpy as np
 
 from stickslip import _core
-from stickslip.analyses.doubts import doubts, few_modes, is_unique, rigid_contacts, structure_doubts
+from stickslip.analyses.doubts import (
+    doubts,
+    few_modes,
+    is_unique,
+    rigid_contacts,
+    structure_doubts,
+    unbounded,
+)
 from stickslip.analyses.texts import TEXTS, told
 from stickslip.checks import listed
 from stickslip.model import Coulomb, Model, StructuralDamper, natural_frequencies
@@ -70,6 +77,7 @@ def balance_assumptions(
                 _observed(model, dofs),
                 *doubts(model),
                 few_modes(model, arrays.omega),
+                not solution.interrupted and unbounded(model, dofs, arrays.omega),
                 _truncation(dofs, arrays, single=single),
                 rigid_contacts(model, arrays),
                 missed_tolerances(arrays.status, "points"),
@@ -104,6 +112,7 @@ def orbit_assumptions(
                 _observed(model, dofs),
                 *doubts(model),
                 few_modes(model, arrays.omega),
+                not solution.interrupted and unbounded(model, dofs, arrays.omega),
                 missed_tolerances(arrays.status, "points"),
             )
         )

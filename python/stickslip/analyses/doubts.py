@@ -6,6 +6,8 @@ stiff that a motion with them may not be found.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -19,6 +21,7 @@ from stickslip.model import Contact, Coulomb, Model
 from stickslip.model.damping import ModalDamping, eigen_pencil
 from stickslip.results.arrays import Arrays
 from stickslip.results.diagnostic import Diagnostic
+from stickslip.results.fields import Float
 from stickslip.results.status import Status
 
 _ROUND, _DEGREES = 15.0, 5.0
@@ -35,6 +38,8 @@ _OTHER = 0.1
 """Share by which a damping ratio may differ from that of its law."""
 _USUAL = 2.0
 """Highest frequency of the modes that are kept in a reduction, over the highest of interest."""
+_BESIDE = 1e-9
+"""Share of a frequency that is rounding, where one is given as a resonance."""
 RIGID = 1e5
 """Stiffness of a contact, over that of the structure at its DOFs, up to which motions are found."""
 
@@ -176,6 +181,25 @@ def uniqueness(model: Model) -> Diagnostic | None:
     if damped is None:
         return told("undamped-motion")
     return None if damped else told("negative-damping")
+
+
+def unbounded(model: Model, dofs: Sequence[str], omega: Float) -> Diagnostic | None:
+    """Say at which of the frequencies that a curve passes nothing bounds what was observed."""
+    if not omega.size or model.structure.is_damped:
+        return None
+    # A frequency that is given as the resonance lies within rounding of it.
+    span = (float(omega.min()) * (1.0 - _BESIDE), float(omega.max()) * (1.0 + _BESIDE))
+    lowest = model.problem.unbounded(span)
+    found = {dof: at for dof in dofs if (at := lowest[model.structure.index(dof)]) is not None}
+    if not found:
+        return None
+    frequencies = sorted(set(found.values()))
+    return told(
+        "unbounded-resonance",
+        omega=frequencies[0],
+        _all=", ".join(f"{one:.6g}" for one in frequencies),
+        _dofs=listed(list(found)),
+    )
 
 
 def instability(model: Model) -> Diagnostic | None:

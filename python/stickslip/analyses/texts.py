@@ -112,6 +112,9 @@ TEXTS = {
     "stiffness nor damping decides where it goes; raise its load, or check the motion in time.",
     "undamped-motion": "The damping leaves some motion undamped: a steady state that friction does "
     "not damp either may not be the only one.",
+    "unbounded-resonance": "Neither damping nor friction bounds the resonance at {_all} rad/s, "
+    "where {_dofs} would grow for ever: what points beside it have says how near they are, nothing "
+    "else. Add damping, or more friction.",
     "negative-damping": "The damping is negative for some motion: the solution may be unstable or "
     "not the only one.",
     "few-modes": "The structure was reduced with modes that make it accurate up to {limit:.6g} "

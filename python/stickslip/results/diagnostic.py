@@ -41,7 +41,7 @@ _CODES = {
         angle-unit two-frequencies no-tolerance forces-left-out peak-at-edge optimum-at-bound
         points-limit no-turn branch-jumps stability-unknown jump further-branches free-flight
         internal-resonance not-determined tied at-bound other-minimum misfit-above-noise
-        cycles-differ values-missed rigid-contacts other-motion few-modes
+        cycles-differ values-missed rigid-contacts other-motion few-modes unbounded-resonance
     """,
     Severity.FAILURE: """
         mode-not-reached branch-stalled branch-turned-back branch-end no-limit predictions-missing
