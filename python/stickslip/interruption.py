@@ -41,6 +41,8 @@ class Interruption:
         self._installed = self._handlers.copy()
         self._noted: tuple[int, float] | None = None
         self._at_once = False
+        self._whole: Interrupted | None = None
+        """What a signal becomes once all is computed."""
 
     def __enter__(self) -> Self:
         if threading.current_thread() is threading.main_thread():
@@ -62,10 +64,16 @@ class Interruption:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        for number, handler in self._installed.items():
-            signal.signal(number, handler)
-        if not isinstance(error, KeyboardInterrupt):
-            self.heed()
+        try:
+            for number, handler in self._installed.items():
+                signal.signal(number, handler)
+            if not isinstance(error, KeyboardInterrupt):
+                self.heed()
+        except KeyboardInterrupt:
+            kept = error if isinstance(error, Interrupted) else self._whole
+            if kept is None:
+                raise
+            raise kept from None
 
     def _note(self, number: int, frame: FrameType | None) -> None:
         again = self._noted is not None and time.monotonic() > self._noted[1] + _IMPATIENT
@@ -101,16 +109,16 @@ class Interruption:
     def completed(self, result: Kind, what: str) -> Kind:
         """Tell that all is done, and return the result.
 
-        If a signal came after the last point, `Interrupted` holds it.
+        If a signal comes after the last point, until the block is left, `Interrupted` holds it.
         """
+        self._whole = Interrupted(
+            f"{what} interrupted when all was computed; the result of this exception is complete",
+            result,
+        )
         try:
             self(1.0)
         except KeyboardInterrupt:
-            raise Interrupted(
-                f"{what} interrupted when all was computed; the result of this exception is "
-                "complete",
-                result,
-            ) from None
+            raise self._whole from None
         return result
 
 

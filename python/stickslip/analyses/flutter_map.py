@@ -105,11 +105,11 @@ def flutter_map(
 
     with Run("flutter map", progress) as run:
         try:
-            with run.at_once():
-                parts = [partial(followed, diameter) for diameter in range(n)]
-                for row, found in in_turn(parts, run, alone=has_own_laws(disk)):
-                    rows.append(row)
-                    cycles.extend(found)
+            parts = [partial(followed, diameter) for diameter in range(n)]
+            alone = has_own_laws(disk)
+            for row, found in in_turn(parts, run, alone=alone, within=run.at_once):
+                rows.append(row)
+                cycles.extend(found)
         except KeyboardInterrupt:
             interrupted = True
         arrays = _arrays(waves, amplitudes, rows, cycles)

@@ -10,16 +10,19 @@ import os
 from collections import deque
 from collections.abc import Callable, Generator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, wait
+from contextlib import AbstractContextManager, nullcontext
 from functools import partial
 from itertools import islice
 from threading import Event, local
-from typing import TypeVar
+from typing import TypeVar, cast
 
 from stickslip.analyses.run import Progress, share
+from stickslip.errors import Interrupted
 from stickslip.model import Model
 from stickslip.model.contact_law import ContactLaw
+from stickslip.results.result import Result
 
-__all__ = ["at_once", "has_own_laws", "in_turn"]
+__all__ = ["at_once", "has_own_laws", "in_turn", "whole"]
 
 _Kind = TypeVar("_Kind")
 
@@ -37,22 +40,21 @@ def in_turn(
     alone: bool = False,
     threads: int | None = None,
     ahead: int = 1,
+    within: Callable[[], AbstractContextManager[None]] = nullcontext,
 ) -> Generator[_Kind, None, None]:
     """Yield what parts of a work give, in their order; `alone`, one after the other in this thread.
 
     Each part gets the progress that it has to tell; Ctrl-C, and what `progress` raises to end the
     work, reach it as `KeyboardInterrupt` of that. `progress` is called in this thread, with the
-    share of the work done. `KeyboardInterrupt` comes behind the last part that was complete, or
-    what the part raises that was not. No more than `ahead` times as many parts as threads are under
-    way: what is complete waits in memory for those before it.
+    share of the work done. `KeyboardInterrupt` comes behind all parts that were complete before one
+    that was not, or what this raises. Parts in this thread are done `within` a context. No more
+    than `ahead` times as many parts as threads are under way: what is complete waits in memory for
+    those before it.
     """
     count = len(parts)
     threads = at_once(count, alone=alone, threads=threads)
     if threads <= 1:
-        for number, part in enumerate(parts):
-            yield part(share(progress, number / count, (number + 1) / count))
-            if progress is not None:
-                progress((number + 1) / count)
+        yield from _alone(parts, progress, within)
         return
     told: dict[int, float] = {}
     ended = Event()
@@ -72,28 +74,69 @@ def in_turn(
         told[number] = 1.0
         return given
 
+    stop: KeyboardInterrupt | None = None
     try:
         for first in range(count):
-            for number in islice(rest, ahead * threads - len(waiting)):
-                told[number] = 0.0
-                waiting.append(pool.submit(computed, number))
-            done = partial(_share_done, first, told, count)
-            stop = _awaited(waiting[0], done, progress)
+            if stop is None:
+                for number in islice(rest, ahead * threads - len(waiting)):
+                    told[number] = 0.0
+                    waiting.append(pool.submit(computed, number))
+                stop = _awaited(waiting[0], partial(_share_done, first, told, count), progress)
             if stop is not None:
                 ended.set()
+                if not waiting:
+                    break
             yield waiting.popleft().result()
             del told[first]
-            if stop is not None:
-                raise stop
+        if stop is not None:
+            raise stop
     finally:
         ended.set()
         pool.shutdown(cancel_futures=True)
+
+
+def _alone(
+    parts: Sequence[Callable[[Progress], _Kind]],
+    progress: Progress,
+    within: Callable[[], AbstractContextManager[None]],
+) -> Generator[_Kind, None, None]:
+    """Yield what parts give, one after the other in this thread."""
+    count = len(parts)
+    for number, part in enumerate(parts):
+        given: list[_Kind] = []
+        stop: KeyboardInterrupt | None = None
+        try:
+            with within():
+                given.append(part(share(progress, number / count, (number + 1) / count)))
+        except KeyboardInterrupt as late:
+            if not given:
+                raise
+            stop = late
+        yield given[0]
+        if stop is not None:
+            raise stop
+        if progress is not None:
+            progress((number + 1) / count)
 
 
 def at_once(count: int, *, alone: bool = False, threads: int | None = None) -> int:
     """Return how many of so many parts `in_turn` works on at the same time."""
     alone = alone or getattr(_WITHIN, "part", False)
     return 1 if alone else min(threads or processors(), count)
+
+
+def whole(compute: Callable[[], Result]) -> Result:
+    """Return what a part computes, also if it heard of the end when it was complete.
+
+    In a thread of its own: who ended the work knows of it.
+    """
+    try:
+        return compute()
+    except Interrupted as stop:
+        result = cast("Result", stop.result)
+        if result.interrupted or not getattr(_WITHIN, "part", False):
+            raise
+        return result
 
 
 def has_own_laws(model: Model) -> bool:

@@ -9,7 +9,7 @@ import numpy as np
 
 from stickslip.analyses.campbell import model_at
 from stickslip.analyses.forced_response import begun_with
-from stickslip.analyses.run import Progress
+from stickslip.analyses.run import Progress, Run
 from stickslip.checks import brief
 from stickslip.disk.bladed_disk import rotor_order
 from stickslip.errors import Interrupted, ModelError
@@ -79,28 +79,29 @@ def speed_response(
             ),
         )
 
-    for number, speed in enumerate(speeds.tolist()):
-        model = model_at(build, speed)
-        order = _order(model, settings.engine_order)
-        models.append(model)
+    with Run("speed response", progress) as run:
         try:
-            point = BalanceKeys.of(
-                omega=[order * speed],
-                harmonics=settings.harmonics,
-                observe=[settings.dof],
-                stability=False,
-                tolerance=_TOLERANCE,
-            )
-            response = begun_with(_last_motion(found), model, point.suited(model))
-        except Interrupted as stop:
+            for number, speed in enumerate(speeds.tolist()):
+                with run.at_once():
+                    model = model_at(build, speed)
+                order = _order(model, settings.engine_order)
+                models.append(model)
+                point = BalanceKeys.of(
+                    omega=[order * speed],
+                    harmonics=settings.harmonics,
+                    observe=[settings.dof],
+                    stability=False,
+                    tolerance=_TOLERANCE,
+                )
+                found.append(begun_with(_last_motion(found), model, point.suited(model)))
+                run((number + 1) / speeds.size)
+        except KeyboardInterrupt as stop:
             if not found:
                 raise
-            message = f"speed response interrupted: {number} of {speeds.size} speeds are complete"
+            done = f"{len(found)} of {speeds.size} speeds are complete"
+            message = f"speed response interrupted: {done}"
             raise Interrupted(message, result(interrupted=True)) from stop
-        found.append(response)
-        if progress is not None:
-            progress((number + 1) / speeds.size)
-    return result(interrupted=False)
+        return run.completed(result(interrupted=False), "speed response")
 
 
 def _last_motion(found: list[ForcedResponse]) -> Complex | None:

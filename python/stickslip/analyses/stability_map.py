@@ -90,19 +90,18 @@ def stability_map(
 
     with Run("stability map", progress) as run:
         try:
-            with run.at_once():
-                parts = [partial(limit_of, value) for value in values]
-                limits = in_turn(parts, run, alone=has_own_laws(model))
-                for value, found in zip(values, limits, strict=True):
-                    if found is None:
-                        interrupted = True
-                        break
-                    refused.append(found if isinstance(found, str) else None)
-                    rows.append(found if isinstance(found, tuple) else (np.nan, np.nan, np.nan))
-                    if isinstance(found, str):
-                        notes.append(_without_limit(name, value, found))
-                    elif np.isnan(found[0]):
-                        notes.append(_without_limit(name, value, "the branch does not turn"))
+            parts = [partial(limit_of, value) for value in values]
+            limits = in_turn(parts, run, alone=has_own_laws(model), within=run.at_once)
+            for value, found in zip(values, limits, strict=True):
+                if found is None:
+                    interrupted = True
+                    break
+                refused.append(found if isinstance(found, str) else None)
+                rows.append(found if isinstance(found, tuple) else (np.nan, np.nan, np.nan))
+                if isinstance(found, str):
+                    notes.append(_without_limit(name, value, found))
+                elif np.isnan(found[0]):
+                    notes.append(_without_limit(name, value, "the branch does not turn"))
         except KeyboardInterrupt:
             interrupted = True
         done = len(rows)

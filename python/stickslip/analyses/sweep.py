@@ -10,8 +10,8 @@ from typing import TypeAlias
 import numpy as np
 
 from stickslip.analyses.campbell import model_at, require_models
-from stickslip.analyses.run import Progress
-from stickslip.analyses.side_by_side import at_once, in_turn
+from stickslip.analyses.run import Progress, Run
+from stickslip.analyses.side_by_side import at_once, in_turn, whole
 from stickslip.analyses.variation import variation_of
 from stickslip.checks import brief
 from stickslip.disk import BladedDisk, MistunedDisk
@@ -87,22 +87,26 @@ def swept(
     def result_at(value: float, part: Progress) -> Result:
         try:
             with one_of(count, threads, together=True):
-                return compute(at(value), part)
+                return whole(lambda: compute(at(value), part))
         except ModelError as error:
             where = f"{kept.parameter} = {value:.6g}"
             raise ModelError(f"{where}: {error}", study=f"{where}: {error.study}") from None
 
     parts = [partial(result_at, value) for value in kept.values]
-    try:
-        results.extend(in_turn(parts, progress, alone=alone))
-    except KeyboardInterrupt as stop:
-        if not results:
-            raise
-        done = Sweep.of(kept, tuple(results), results[0].model, interrupted=True)
-        message = f"sweep interrupted: {len(results)} of {len(parts)} values are complete"
-        raise Interrupted(message, done) from stop
-    base = models if isinstance(models, Model) else results[0].model
-    return Sweep.of(kept, tuple(results), base)
+    with Run("sweep", progress) as run:
+        try:
+            results.extend(in_turn(parts, run, alone=alone, within=run.at_once))
+        except KeyboardInterrupt as stop:
+            late = getattr(stop, "result", None)
+            if isinstance(late, Result) and not late.interrupted:
+                results.append(late)
+            if not results:
+                raise
+            done = Sweep.of(kept, tuple(results), results[0].model, interrupted=True)
+            message = f"sweep interrupted: {len(results)} of {len(parts)} values are complete"
+            raise Interrupted(message, done) from stop
+        base = models if isinstance(models, Model) else results[0].model
+        return run.completed(Sweep.of(kept, tuple(results), base), "sweep")
 
 
 def _family(

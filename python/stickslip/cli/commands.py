@@ -140,8 +140,8 @@ def certify(
             console.complain("interrupted", "saving what was compared")
             cast("ForcedResponse", stop.result).save(target)
             raise KeyboardInterrupt(f"{stop}, now in {target}") from None
+        certified.save(target)
     console.show_all(certificates([("", certified)], "", "m"))
-    certified.save(target)
     console.tell("")
     console.tell(f"certified: {target}")
     if not warned([(result.stem, certified)]):

@@ -11,7 +11,7 @@ from functools import partial
 from pathlib import Path
 
 from stickslip.analyses.run import Progress
-from stickslip.analyses.side_by_side import at_once, in_turn
+from stickslip.analyses.side_by_side import at_once, in_turn, whole
 from stickslip.analyses.sweep import swept
 from stickslip.checks import brief, file_path, is_file, is_reserved, vanished
 from stickslip.errors import ModelError
@@ -191,7 +191,7 @@ class Study:
 
         def result_of(case: Case, part: Progress) -> Result:
             with named(self.source), one_of(len(cases), threads, together=False):
-                return self._result(case, part, shown)
+                return whole(lambda: self._result(case, part, shown))
 
         parts = [partial(result_of, case) for case in cases]
         yield from in_turn(parts, progress, alone=self._has_threads)
