@@ -58,11 +58,11 @@ pub fn check_samples(samples: usize, columns: usize) -> PyResult<()> {
 }
 
 /// A core error as a Python `ValueError`; one of a DOF that hardly has a mass carries its position,
-/// its rate over the frequency and the frequency, since the core knows no names.
+/// its rate over the frequency, the frequency and the highest ratio, since the core knows no names.
 pub fn refused(error: stickslip_core::Error) -> PyErr {
     match error {
-        stickslip_core::Error::TooFast { dof, ratio, omega } => {
-            TooFastError::new_err((dof, ratio, omega))
+        stickslip_core::Error::TooFast { dof, ratio, omega, fastest } => {
+            TooFastError::new_err((dof, ratio, omega, fastest))
         }
         other => PyValueError::new_err(other.to_string()),
     }

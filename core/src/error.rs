@@ -83,6 +83,8 @@ pub enum Error {
         ratio: f64,
         /// Frequency of the period in rad/s.
         omega: f64,
+        /// The highest ratio that is followed.
+        fastest: f64,
     },
     /// No limit cycle to begin a branch with.
     #[error(

@@ -1,5 +1,7 @@
 """Fast modes slowed by mass that moves with them alone."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -110,3 +112,53 @@ def test_rings_and_dofs_without_mass_are_refused():
     model = ss.Model(structure, [contact], [ss.Force("0", 1.0)])
     with pytest.raises(ss.ModelError, match=r"mass_scaling: dof '1' has no mass"):
         ss.exact_response(model, [80.0], mass_scaling=TOLERANCE)
+
+
+def heavy(stiffness: float) -> ss.Model:
+    """Return two masses that nobody would call light, on a contact."""
+    structure = ss.Structure(
+        np.diag([0.517, 0.352]), [[4.9e4, -2e4], [-2e4, 4.6e4]], ss.ModalDamping(1e-3)
+    )
+    contact = ss.Jenkins("1", stiffness=stiffness, slip_force=0.5, name="stop")
+    return ss.Model(structure, [contact], [ss.Force("0", 1.0)])
+
+
+@pytest.mark.parametrize("scaling", [None, TOLERANCE, 0.1])
+@pytest.mark.parametrize("analysis", ["exact", "transient"])
+def test_a_stiff_contact_is_named_where_it_makes_a_mass_too_fast(scaling, analysis):
+    def follow(model):
+        if analysis == "exact":
+            return ss.exact_response(model, [1.6], mass_scaling=scaling)
+        return ss.transient(model, 1.6, 1, mass_scaling=scaling)
+
+    softer = (
+        r"contact 'stop': on its 1\.2e\+12 N/m dof '1' of 0\.352 kg .* make it softer than (\S+) "
+    )
+    with pytest.raises(ss.ModelError, match=softer) as refused:
+        follow(heavy(1.2e12))
+    assert "mass_scaling" not in str(refused.value)
+    limit = float(re.search(softer, str(refused.value))[1])
+    with pytest.raises(ss.ModelError, match="contact 'stop'"):
+        follow(heavy(1.1 * limit))
+    if analysis == "exact":
+        assert follow(heavy(0.99 * limit)).converged.all()
+
+
+@pytest.mark.parametrize("damping", [None, ss.ModalDamping(0.01), np.diag([0.5, 0.2, 0.3])])
+@pytest.mark.parametrize("scaling", [None, 1e-7])
+def test_the_mass_scaling_that_is_advised_helps(damping, scaling):
+    stiffness = 1e4 * (2.0 * np.eye(3) - np.eye(3, k=1) - np.eye(3, k=-1))
+    structure = ss.Structure(np.diag([1.0, 1.5, 1e-12]), stiffness, damping)
+    contact = ss.Jenkins("2", stiffness=2e4, slip_force=0.3)
+    model = ss.Model(structure, [contact], [ss.Force("0", 1.0)])
+    with pytest.raises(ss.ModelError, match="mass of dof '2': with 1e-12 kg it") as refused:
+        ss.exact_response(model, [60.0, 80.0], mass_scaling=scaling)
+    said = str(refused.value)
+    assert ("slowed by mass_scaling=1e-7" in said) == (scaling is not None)
+    advised = re.search(r"give mass_scaling=(\S+) to", said)
+    if isinstance(damping, np.ndarray):
+        # Its damping, not its frequency, makes it fast: mass cannot help.
+        assert advised is None
+        return
+    slowed = ss.exact_response(model, [60.0, 80.0], mass_scaling=float(advised[1]))
+    assert slowed.converged.all()

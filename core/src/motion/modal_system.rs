@@ -236,9 +236,9 @@ impl ModalSystem {
             return Ok(());
         }
         let rates = dof_rates(model);
-        let fastest = |a: &usize, b: &usize| rates[*a].total_cmp(&rates[*b]);
-        let dof = (0..rates.len()).max_by(fastest).unwrap_or(0);
-        Err(Error::TooFast { dof, ratio, omega })
+        let faster = |a: &usize, b: &usize| rates[*a].total_cmp(&rates[*b]);
+        let dof = (0..rates.len()).max_by(faster).unwrap_or(0);
+        Err(Error::TooFast { dof, ratio, omega, fastest })
     }
 
     /// The least rate at which a DOF that is held moves while all others are fixed [1/s].

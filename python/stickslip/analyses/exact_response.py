@@ -9,7 +9,7 @@ from stickslip.analyses.branch_assumptions import stability_of_orbits
 from stickslip.analyses.doubts import is_unique
 from stickslip.analyses.forced_response import forced_response
 from stickslip.analyses.free_flight import with_free_flight
-from stickslip.analyses.mass_scaling import mass_scaled
+from stickslip.analyses.mass_scaling import mass_scaled, pace_refused
 from stickslip.analyses.run import Progress, Run, refusals, share
 from stickslip.disk.wave_ring import moving
 from stickslip.errors import Interrupted, ModelError
@@ -83,7 +83,8 @@ def exact_response(
             grid = _frequencies(model, grid, kept, dofs, share(run, 0.0, _CHOOSING))
             part = share(run, _CHOOSING, 1.0)
         slowed, scaling = mass_scaled(model, grid, kept.mass_scaling)
-        result = orbits_at(slowed, grid, dofs, kept, part, *scaling)
+        with pace_refused(model, grid, kept.mass_scaling):
+            result = orbits_at(slowed, grid, dofs, kept, part, *scaling)
         return run.ended(with_free_flight(result), f"{result.omega.size} of {grid.size} points")
 
 

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 import numpy as np
 
+from stickslip import _core
 from stickslip.analyses.texts import told
 from stickslip.checks import Matrix, brief
 from stickslip.errors import ModelError
+from stickslip.model.configurations import natural_frequencies
 from stickslip.model.damping import eigen_pencil
 from stickslip.model.model import Model
+from stickslip.model.pace import TooFast, too_fast
 from stickslip.model.structure import Structure
 from stickslip.results.diagnostic import Diagnostic
 from stickslip.results.fields import Float
@@ -21,6 +27,8 @@ _SLOWEST = 32.0
 """Lowest frequency of slowed modes, over those of the forces: higher harmonics are small."""
 _SPREAD = 1.25
 """Highest frequency of slowed modes over their lowest: equal ones would lose their shapes."""
+_TOLERANCES = (1e-5, 1e-4, 1e-3, 1e-2, 1e-1)
+"""Tolerances that are advised where motions are too fast."""
 _NEAR = 10.0
 """Stuck modes are looked at up to this many times the frequencies of the forces."""
 
@@ -90,6 +98,37 @@ def mass_scaled(
     scaled = _slowed(structure, shapes[:, fast], modes[fast], slowed * spread)
     said = told("mass-scaling", modes=count, fastest=fastest, slowed=slowed, change=change)
     return model.with_structure(scaled), (said,)
+
+
+@contextmanager
+def pace_refused(model: Model, omega: Float, tolerance: float | None) -> Iterator[None]:
+    """Say of a motion that is too fast to follow what scaled mass can do about it.
+
+    `model` is the one that was given; `omega` and `tolerance` those of `mass_scaled`.
+    """
+    try:
+        yield
+    except ModelError as error:
+        if not isinstance(error.__cause__, _core.TooFastError):
+            raise
+        found = TooFast(*error.__cause__.args)
+        larger = _that_helps(model, omega, tolerance, found)
+        raise too_fast(found, model, tolerance, larger) from error.__cause__
+
+
+def _that_helps(
+    model: Model, omega: Float, tolerance: float | None, found: TooFast
+) -> float | None:
+    """Return a larger tolerance with which a motion is slow enough to follow, if there is one."""
+    if type(model) is not Model or not model.structure.mass.any(axis=1).all():
+        return None
+    fastest = [
+        (one, float(natural_frequencies(mass_scaled(model, omega, one)[0])[-1]))
+        for one in (tolerance, *_TOLERANCES)
+        if one is None or tolerance is None or one >= tolerance
+    ]
+    allowed = fastest[0][1] * found.most / found.ratio
+    return next((one for one, highest in fastest if highest < allowed), None)
 
 
 def _ringing(model: Model, shapes: Matrix, modes: Float, omega: float) -> Float:

@@ -10,7 +10,7 @@ from typing import TypeAlias, TypeVar
 from stickslip.errors import ModelError
 from stickslip.interruption import Interruption, stopped
 from stickslip.model import Model
-from stickslip.model.model import refusal
+from stickslip.model.pace import refusal
 from stickslip.results.result import Result
 
 Progress: TypeAlias = Callable[[float], None] | None

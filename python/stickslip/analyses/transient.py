@@ -15,7 +15,7 @@ from stickslip.analyses.arguments import (
     state_of,
 )
 from stickslip.analyses.assumptions import transient_assumptions, turn_per_step
-from stickslip.analyses.mass_scaling import mass_scaled
+from stickslip.analyses.mass_scaling import mass_scaled, pace_refused
 from stickslip.analyses.run import Progress, Run, refusals
 from stickslip.errors import ModelError
 from stickslip.memory import require_numbers
@@ -56,13 +56,14 @@ def transient(model: Model, settings: TransientKeys, *, progress: Progress = Non
     require_time(model)
     dofs = observed_dofs(settings, model)
     kept = TransientSettings.of(**settings.part(TransientSettings))
-    model, scaling = mass_scaled(model, np.array([kept.omega]), kept.mass_scaling)
+    given, omega = model, np.array([kept.omega])
+    model, scaling = mass_scaled(given, omega, kept.mass_scaling)
     _require_stable(model, kept)
     start = settings.start
     first = None if start is None else state_of(model, start, "start").vector
     _require_room(model, kept, dofs)
     with Run("transient", progress, model) as run:
-        with refusals(model):
+        with pace_refused(given, omega, kept.mass_scaling), refusals(model):
             history = _core.transient(model.problem, kept, first, columns_of(dofs, model), run)
         result = Transient.of(
             history,

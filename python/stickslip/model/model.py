@@ -337,27 +337,6 @@ def _remade(kind: type[Model], parts: dict[str, Any]) -> Model:
     return kind(**parts)
 
 
-def refusal(error: ValueError, model: Model) -> ModelError:
-    """Return what the core refuses of a model, with the names that the core does not know."""
-    if not isinstance(error, _core.TooFastError):
-        return ModelError(str(error))
-    dof, ratio, omega = error.args
-    # A travelling wave is computed on several sectors.
-    dof %= len(model.structure)
-    mass = model.structure.mass[dof, dof]
-    reason = (
-        f"mass of dof {brief(model.structure.dofs[dof])}: with {mass:.3g} kg it moves "
-        f"{ratio:.2g} times faster than omega = {omega:.6g} rad/s, too fast to follow in time; "
-        "condense this dof statically,"
-    )
-    return ModelError(
-        f"{reason} give mass_scaling=1e-5 to exact_response or transient, or balance harmonics "
-        "with forced_response",
-        study=f"{reason} slow it with mass_scaling = 1e-5 in an analysis of kind 'exact' or "
-        "'transient', or balance harmonics with kind 'forced-response'",
-    )
-
-
 def _free_names(law: str, taken: Set[str]) -> Iterator[str]:
     numbered = (f"{law}-{number}" for number in count(2))
     return (name for name in chain([law], numbered) if name not in taken)

@@ -16,7 +16,8 @@ from stickslip.disk.wave_ring import Rotation, moving
 from stickslip.drawn import Drawn
 from stickslip.errors import ModelError
 from stickslip.model import ContactRef, PointRef
-from stickslip.model.model import Model, refusal
+from stickslip.model.model import Model
+from stickslip.model.pace import refusal
 from stickslip.model.state import State
 from stickslip.results.arrays import STABILITY, Arrays, ExactColumns, Measure, amplitude_in
 from stickslip.results.dataset import Stored

@@ -14,7 +14,7 @@ from stickslip.calls import outside
 from stickslip.checks import brief, choice
 from stickslip.disk.wave_ring import moving
 from stickslip.errors import ModelError
-from stickslip.model.model import refusal
+from stickslip.model.pace import refusal
 from stickslip.results.arrays import Measure
 from stickslip.results.fields import Bool, Float, Int
 from stickslip.results.periodic import Sweep, key_of
