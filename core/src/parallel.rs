@@ -2,15 +2,19 @@
 
 use crate::progress::Progress;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::mpsc::{channel, RecvTimeoutError};
+use std::sync::mpsc::{channel, Sender};
 use std::time::Duration;
 
 /// Time between two questions whether to go on.
 const PATIENCE: Duration = Duration::from_millis(20);
 
+/// Parts that wait for each processor: few, so that works at the same time advance at the same pace.
+const AHEAD: usize = 4;
+
 /// Does `count` parts of a work, as many at a time as there are processors, and returns what they give in
 /// their order: no result depends on the number of threads. A part tells its share of the work done, and
-/// ends when it hears `false`; `progress` hears the mean, in the thread of the caller.
+/// ends when it hears `false`; `progress` hears the mean, in the thread of the caller. Parts that were not
+/// begun by then hear `false` from the start.
 pub(crate) fn in_parts<T: Send>(
     count: usize,
     progress: &Progress<'_>,
@@ -27,29 +31,36 @@ pub(crate) fn in_parts<T: Send>(
     let (sender, receiver) = channel();
     let mut found: Vec<Option<T>> = (0..count).map(|_| None).collect();
     rayon::in_place_scope_fifo(|scope| {
-        for index in 0..count {
-            let (sender, stop, shares, part) = (sender.clone(), &stop, &shares, &part);
+        let begin = |index: usize| {
+            let (answer, stop, shares, part) = (Answer::new(index, &sender), &stop, &shares, &part);
             scope.spawn_fifo(move |_| {
                 let look = |share: f64| {
                     shares[index].store(share.to_bits(), Ordering::Relaxed);
                     !stop.load(Ordering::Relaxed)
                 };
                 let own = part(index, &look);
-                look(1.0);
-                // The caller listens until the last part has ended.
-                let _ = sender.send((index, own));
+                answer.give(own);
             });
-        }
-        drop(sender);
-        loop {
-            match receiver.recv_timeout(PATIENCE) {
-                Ok((index, own)) => found[index] = Some(own),
-                Err(RecvTimeoutError::Timeout) => {}
-                Err(RecvTimeoutError::Disconnected) => break,
+            index
+        };
+        let mut rest = 0..count;
+        let first = rest.by_ref().take(AHEAD * rayon::current_num_threads());
+        let (mut under_way, mut ended): (Vec<usize>, usize) = (first.map(begin).collect(), 0);
+        while !under_way.is_empty() {
+            if let Ok((index, own)) = receiver.recv_timeout(PATIENCE) {
+                found[index] = own;
+                ended += 1;
+                under_way.retain(|other| *other != index);
+                under_way.extend(rest.next().map(begin));
             }
-            let done = shares.iter().map(|share| f64::from_bits(share.load(Ordering::Relaxed)));
-            if !progress(done.sum::<f64>() / count as f64) {
+            let share = |index: &usize| f64::from_bits(shares[*index].load(Ordering::Relaxed));
+            let done = ended as f64 + under_way.iter().map(share).sum::<f64>();
+            if !progress(done / count as f64) {
                 stop.store(true, Ordering::Relaxed);
+                for index in rest.by_ref() {
+                    found[index] = Some(part(index, &|_| false));
+                    ended += 1;
+                }
             }
         }
     });
@@ -57,9 +68,34 @@ pub(crate) fn in_parts<T: Send>(
     found.into_iter().flatten().collect()
 }
 
+/// What a part sends: nothing, if it panics.
+struct Answer<T> {
+    index: usize,
+    sender: Sender<(usize, Option<T>)>,
+    own: Option<T>,
+}
+
+impl<T> Answer<T> {
+    fn new(index: usize, sender: &Sender<(usize, Option<T>)>) -> Self {
+        Self { index, sender: sender.clone(), own: None }
+    }
+
+    fn give(mut self, own: T) {
+        self.own = Some(own);
+    }
+}
+
+impl<T> Drop for Answer<T> {
+    fn drop(&mut self) {
+        // The caller listens until the last part has ended.
+        let _ = self.sender.send((self.index, self.own.take()));
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::sync::atomic::AtomicUsize;
 
     #[test]
     fn parts_come_back_in_their_order_and_end_when_told_to() {
@@ -72,5 +108,41 @@ mod tests {
             true
         });
         assert_eq!(told, [true; 4]);
+    }
+
+    /// Neither waits until all parts of the other are done.
+    #[test]
+    fn works_at_the_same_time_advance_together() {
+        const COUNT: usize = 1000;
+        let [begun, waiting] = [AtomicBool::new(false), AtomicBool::new(false)];
+        let [done, seen] = [AtomicUsize::new(0), AtomicUsize::new(COUNT)];
+        let wait_for = |told: &AtomicBool| {
+            while !told.load(Ordering::Relaxed) {
+                std::thread::yield_now();
+            }
+        };
+        std::thread::scope(|scope| {
+            scope.spawn(|| {
+                in_parts(COUNT, &|_| true, |index, _| {
+                    begun.store(true, Ordering::Relaxed);
+                    if index > COUNT / 10 {
+                        wait_for(&waiting);
+                    }
+                    done.fetch_add(1, Ordering::Relaxed);
+                });
+            });
+            wait_for(&begun);
+            // It is heard once its parts wait for a processor, or have been done.
+            let heard = |_: f64| {
+                waiting.store(true, Ordering::Relaxed);
+                true
+            };
+            in_parts(COUNT, &heard, |index, _| {
+                if index == 0 {
+                    seen.store(done.load(Ordering::Relaxed), Ordering::Relaxed);
+                }
+            });
+        });
+        assert!(seen.into_inner() < COUNT / 2);
     }
 }

@@ -50,12 +50,17 @@ pub fn sweep_in_pieces(
     }
     let pieces = pieces(omega.len());
     let found = in_parts(pieces.len(), progress, |piece, progress| {
-        sweep(&omega[pieces[piece].clone()], progress)
+        // What lies behind the end of a curve is left out: nothing is prepared for it.
+        let begun = piece == 0 || progress(0.0);
+        begun.then(|| sweep(&omega[pieces[piece].clone()], progress)).transpose()
     });
     let (mut points, mut profile) = (Vec::with_capacity(omega.len()), Profile::default());
     let (mut half_wave, mut interrupted, mut first) = (false, false, None);
     for piece in found {
-        let piece = piece?;
+        let Some(piece) = piece? else {
+            interrupted = true;
+            break;
+        };
         profile.add_whole(&piece.profile);
         half_wave |= piece.half_wave;
         // A curve that was ended early has no gap.

@@ -44,6 +44,9 @@ pub fn orbit_sweep(orbits: PeriodicOrbits<'_>, omega: &[f64]) -> Result<Orbits, 
     let pieces =
         if plan.unique { pieces(omega.len()) } else { iter::once(0..omega.len()).collect() };
     let found = in_parts(pieces.len(), orbits.progress, |piece, progress| {
+        if !progress(0.0) {
+            return Ok(None);
+        }
         let mut own = plan.clone().orbits(progress);
         let system = Arc::clone(&plan.system);
         let omega = &omega[pieces[piece].clone()];
@@ -58,11 +61,14 @@ pub fn orbit_sweep(orbits: PeriodicOrbits<'_>, omega: &[f64]) -> Result<Orbits, 
                 Ok(Some(orbit).filter(|orbit| orbit.response.status != PointStatus::NotComputed))
             },
         );
-        found.map(|(points, interrupted)| (points, interrupted, own.profile))
+        found.map(|(points, interrupted)| Some((points, interrupted, own.profile)))
     });
     let (mut points, mut interrupted, mut profile) = (Vec::new(), false, Profile::default());
     for piece in found {
-        let (own, ended, spent) = piece?;
+        let Some((own, ended, spent)) = piece? else {
+            interrupted = true;
+            break;
+        };
         // A curve that was ended early has no gap.
         if !interrupted {
             points.extend(own);
