@@ -37,12 +37,14 @@ class Interrupted(KeyboardInterrupt):
     """An analysis was stopped by Ctrl-C; what had been computed is kept.
 
     Its attribute `result` is the partial result, of the type that the analysis would have returned.
-    Points that were not reached say so in their status.
+    Points that were not reached say so in their status. `beside` has what other parts of the work,
+    which were under way at the same time, had come to: each by its position among the parts.
     """
 
     def __init__(self, message: str, result: object) -> None:
         super().__init__(message)
         self.result = result
+        self.beside: tuple[tuple[int, object], ...] = ()
 
     def __reduce__(self) -> tuple[type[Interrupted], tuple[str, object]]:
         return type(self), (str(self), self.result)

@@ -33,6 +33,22 @@ def model():
     return model if model.problem else None
 
 
+STUDY = """
+name = "pair"
+[structure]
+mass = [[1.0, 0.0], [0.0, 1.0]]
+stiffness = [[1100.0, -100.0], [-100.0, 1100.0]]
+dofs = ["a", "b"]
+[[force]]
+dof = "b"
+amplitude = 1.2
+[analysis]
+kind = "forced-response"
+omega = [20.0, 30.0]
+harmonics = 3
+levels = [1.0, 2.0, 4.0]
+"""
+
 ANALYSES = {
     "forced_response": lambda model: ss.forced_response(model, [30.0, 33.0], 3),
     "exact_response": lambda model: ss.exact_response(model, [30.0]),
@@ -188,6 +204,57 @@ def test_what_later_parts_have_come_to_is_not_lost(monkeypatch):
     with pytest.raises(ss.Interrupted) as caught:
         next(found)
     assert caught.value.result == "half"
+
+
+@pytest.mark.parametrize("first", ["nothing", "a part", "all"])
+def test_a_run_saves_what_all_levels_have_come_to(first, model, tmp_path, monkeypatch):
+    """Whatever the first has, the level beside it is saved."""
+    from typer.testing import CliRunner
+
+    from stickslip.cli import app
+    from stickslip.study import Study
+
+    def interrupted(result):
+        raise ss.Interrupted("stopped", replace(result, interrupted=True))
+
+    begun = threading.Event()
+
+    def computed(study, case, progress, shown):
+        result = ss.forced_response(case.model, [30.0], 3)
+        if case.level == 1.0:
+            assert begun.wait(50)
+        begun.set()
+        try:
+            while True:
+                progress(0.5)
+        except KeyboardInterrupt:
+            if case.level == 2.0 or first == "a part":
+                interrupted(result)
+            if first == "nothing":
+                raise
+        return result
+
+    def press(study, watch):
+        def pressed(share):
+            if begun.is_set():
+                raise KeyboardInterrupt
+
+        return own(study, pressed)
+
+    own = Study.run
+    monkeypatch.setattr(side_by_side, "processors", lambda: 2)
+    monkeypatch.setattr(Study, "_result", computed)
+    monkeypatch.setattr(Study, "run", press)
+    monkeypatch.chdir(tmp_path)
+    Path("study.toml").write_text(STUDY)
+    done = CliRunner().invoke(app, ["run", "study.toml", "--no-plot"])
+    assert done.exit_code == 130
+    names = {file.name: ss.load(file).interrupted for file in Path("results").iterdir()}
+    expected = {"nothing": {}, "a part": {"pair-1-partial.nc": True}, "all": {"pair-1.nc": False}}
+    assert names == expected[first] | {"pair-2-partial.nc": True}
+    count = int(first == "all")
+    assert f"interrupted: {count} of 3 curves complete in results, the next" in done.stderr
+    assert all(name in done.stderr for name, part in names.items() if part)
 
 
 def test_a_certified_curve_is_saved_before_it_is_shown(model, tmp_path, monkeypatch):

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 from collections import deque
-from collections.abc import Callable, Generator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, wait
 from contextlib import AbstractContextManager, nullcontext
 from functools import partial
@@ -47,9 +47,9 @@ def in_turn(
     Each part gets the progress that it has to tell; Ctrl-C, and what `progress` raises to end the
     work, reach it as `KeyboardInterrupt` of that. `progress` is called in this thread, with the
     share of the work done. `KeyboardInterrupt` comes behind all parts that were complete before one
-    that was not, or what this raises. Parts in this thread are done `within` a context. No more
-    than `ahead` times as many parts as threads are under way: what is complete waits in memory for
-    those before it.
+    that was not, or what this raises; its `beside` has what later parts have come to. Parts in this
+    thread are done `within` a context. No more than `ahead` times as many parts as threads are
+    under way: what is complete waits in memory for those before it.
     """
     count = len(parts)
     threads = at_once(count, alone=alone, threads=threads)
@@ -86,13 +86,27 @@ def in_turn(
                 ended.set()
                 if not waiting:
                     break
-            yield waiting.popleft().result()
+            part = waiting.popleft()
+            error = part.exception()
+            if stop is not None and isinstance(error, KeyboardInterrupt):
+                vars(error)["beside"] = tuple(_kept(waiting, first + 1))
+            yield part.result()
             del told[first]
         if stop is not None:
             raise stop
     finally:
         ended.set()
         pool.shutdown(cancel_futures=True)
+
+
+def _kept(waiting: Iterable[Future[_Kind]], first: int) -> Iterator[tuple[int, object]]:
+    """Yield what parts have come to that were told to end, by their number."""
+    for number, part in enumerate(waiting, first):
+        error = part.exception()
+        if error is None:
+            yield number, part.result()
+        elif isinstance(error, Interrupted):
+            yield number, error.result
 
 
 def _alone(

@@ -166,19 +166,25 @@ def _compute(study: Study, out: Path, clock: Clock, *, quiet: bool) -> list[Resu
                             part.unlink()
             # Before, a signal is heeded where the next curve is kept as far as it went.
             watch.heed()
-        except Interrupted as stop:
-            complain("interrupted", "saving what was computed")
-            case, result = cases[len(computed)], cast("Result", stop.result)
-            # a part under another name, so that a complete curve of an earlier run is not lost
-            file = _file(out, case, "-partial" if result.interrupted else "")
-            save(result, file)
-            if result.interrupted:
-                left = f"the next one as far as it went in {file}{rest}"
-                raise KeyboardInterrupt(f"{complete()}, {left}") from None
-            computed.append(result)
-            raise KeyboardInterrupt(complete()) from None
-        except KeyboardInterrupt:
-            raise KeyboardInterrupt(complete()) from None
+        except KeyboardInterrupt as stop:
+            kept: list[tuple[int, Result]] = list(getattr(stop, "beside", ()))
+            if isinstance(stop, Interrupted):
+                kept.insert(0, (len(computed), cast("Result", stop.result)))
+            if kept:
+                complain("interrupted", "saving what was computed")
+            parts = []
+            for number, result in kept:
+                # a part under another name, so that a complete curve of an earlier run is not lost
+                file = _file(out, cases[number], "-partial" if result.interrupted else "")
+                save(result, file)
+                if result.interrupted:
+                    parts.append(str(file))
+                else:
+                    computed.append(result)
+            left = f", the next one as far as it went in {parts[0]}" if parts else ""
+            if parts[1:]:
+                left = f", the next ones as far as they went in {', '.join(parts)}"
+            raise KeyboardInterrupt(f"{complete()}{left}{rest if parts else ''}") from None
     return computed
 
 
