@@ -122,13 +122,17 @@ def _that_helps(
     """Return a larger tolerance with which a motion is slow enough to follow, if there is one."""
     if type(model) is not Model or not model.structure.mass.any(axis=1).all():
         return None
-    fastest = [
-        (one, float(natural_frequencies(mass_scaled(model, omega, one)[0])[-1]))
-        for one in (tolerance, *_TOLERANCES)
-        if one is None or tolerance is None or one >= tolerance
-    ]
-    allowed = fastest[0][1] * found.most / found.ratio
-    return next((one for one, highest in fastest if highest < allowed), None)
+    larger = (one for one in _TOLERANCES if tolerance is None or one > tolerance)
+    rates = ((one, _rate(mass_scaled(model, omega, one)[0])) for one in larger)
+    return next((one for one, rate in rates if rate <= found.most * found.omega), None)
+
+
+def _rate(model: Model) -> float:
+    """Return the fastest rate of free motions [1/s], as the core reckons it."""
+    structure = model.structure
+    _, shapes = eigen_pencil(structure.stiffness, structure.mass)
+    decay = float(np.linalg.norm(shapes.T @ structure.damping @ shapes))
+    return float(natural_frequencies(model)[-1]) + decay
 
 
 def _ringing(model: Model, shapes: Matrix, modes: Float, omega: float) -> Float:
