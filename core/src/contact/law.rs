@@ -25,6 +25,20 @@ pub struct Motion<'a> {
     pub residual: Residual,
 }
 
+impl<'a> Motion<'a> {
+    /// The mean of one displacement, and its motion about that, whose digits a large mean does not take.
+    pub(super) fn about_mean<'b>(&self, series: &'b mut Vec<f64>) -> (f64, Motion<'b>)
+    where
+        'a: 'b,
+    {
+        let harmonics = self.table.harmonics();
+        series.clear();
+        series.extend_from_slice(self.displacement);
+        series[..harmonics.offset()].fill(0.0);
+        (harmonics.mean(self.displacement), Motion { displacement: series, ..*self })
+    }
+}
+
 /// Fourier coefficients of the slip load of one contact, and their derivative.
 #[derive(Debug, Clone, Default)]
 pub struct SlipLoad {

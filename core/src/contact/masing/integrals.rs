@@ -41,7 +41,7 @@ pub(super) fn every(_: &Stretch) -> bool {
     true
 }
 
-/// Calls `visit` with panels that cover the wanted stretches of the loops.
+/// Calls `visit` with panels that cover the wanted stretches of the loops, and counts all that were tried.
 pub(super) fn sweep(
     curve: &LoadingCurve,
     motion: Motion<'_>,
@@ -49,12 +49,12 @@ pub(super) fn sweep(
     wanted: impl Fn(&Stretch) -> bool,
     largest: f64,
     mut visit: impl FnMut(&Nodes<'_>),
-) {
+) -> usize {
     let harmonics = motion.table.harmonics();
     let mut panel = Panel::new(harmonics);
     let power = |root: f64| (SMOOTH / (2.0 * root + 1.0)).ceil() as i32;
     let at_rest = curve.backbone.root_at_rest().map_or(1, power);
-    let (mut intervals, mut open) = (Vec::new(), Vec::new());
+    let (mut intervals, mut open, mut solved) = (Vec::new(), Vec::new(), 0);
     for stretch in loops.stretches.iter().filter(|stretch| wanted(stretch)) {
         let branch = &loops.branches[stretch.branch];
         let powers =
@@ -62,6 +62,7 @@ pub(super) fn sweep(
         Interval::cut(harmonics, [stretch.start, stretch.end], powers, &mut intervals);
         open.extend(intervals.drain(..).map(|interval| (interval, 0)));
         while let Some((interval, halvings)) = open.pop() {
+            solved += 1;
             let u = panel.place(harmonics, &interval, motion.displacement);
             let distance = u.map(|u| (0.5 * branch.sign * (u - branch.origin)).max(0.0));
             let [loss, slope] = curve.losses(&distance);
@@ -74,6 +75,7 @@ pub(super) fn sweep(
             visit(&Nodes { panel: &panel, stretch, branch, distance, loss, slope });
         }
     }
+    solved
 }
 
 /// Adds the integrals of the loops, without what keeps them from their middle.
@@ -111,7 +113,7 @@ pub(super) fn add_loops(
     }
     sums.rows(harmonics, 1.0, |i, row| out.value[i] += dot(row, motion.displacement));
     let bent = |stretch: &Stretch| curve.line(stretch.piece).is_none();
-    sweep(curve, motion, loops, bent, largest, |nodes| {
+    out.solved = sweep(curve, motion, loops, bent, largest, |nodes| {
         let (mut load, mut slope) = ([0.0; NODES], [0.0; NODES]);
         for i in 0..NODES {
             let own = weight * nodes.panel.weight[i];
@@ -181,4 +183,44 @@ fn anchors(
     }
     anchored.extend_from_slice(&held[..size]);
     anchored
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use crate::contact::backbone::Backbone;
+    use crate::contact::masing::Masing;
+    use crate::contact::{HarmonicForce as _, Motion, Residual, SlipLoad};
+    use crate::fourier::{Harmonics, SampleTable};
+
+    /// Where a contact is moved changes nothing in what its integrals take, and how far, as much as its logarithm
+    /// does: panels are halved towards the reversals.
+    #[test]
+    fn far_motions_take_few_panels() {
+        let law = Masing::new(1.0, 1.0, Backbone::Exponential).unwrap();
+        let table = SampleTable::new(Harmonics::new(3, false));
+        let at = |mean: f64, size: f64| {
+            let displacement = [mean, size, 0.3 * size, -0.2 * size, 0.1 * size, 0.05 * size, 0.0];
+            let mut load = SlipLoad::default();
+            let residual = Residual::Centred;
+            law.slip_load(
+                Motion { table: &table, displacement: &displacement, residual },
+                true,
+                &mut load,
+            );
+            load
+        };
+        let usual = at(0.0, 1.0).solved as f64;
+        for size in [0.1, 1.0, 1e3, 1e6, 1e9] {
+            let near = at(0.0, size);
+            let most = 4.0 * usual * (1.0 + size.log10().max(0.0));
+            assert!((near.solved as f64) < most, "{size}: {}", near.solved);
+            for mean in [1.0, 1e6, 1e12] {
+                let far = at(mean * size, size);
+                assert_eq!(far.solved, near.solved, "{size} {mean}");
+                assert_eq!(far.value[1..], near.value[1..]);
+                assert_eq!(far.tangent[1..], near.tangent[1..]);
+            }
+        }
+    }
 }

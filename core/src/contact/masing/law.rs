@@ -259,6 +259,8 @@ impl HarmonicForce for Masing {
     fn slip_load(&self, motion: Motion<'_>, tangent: bool, out: &mut SlipLoad) {
         let harmonics = motion.table.harmonics();
         out.reset(harmonics.slots(), tangent);
+        let mut about_mean = Vec::new();
+        let (mean, motion) = motion.about_mean(&mut about_mean);
         let path = Path::new(motion);
         let half_range = path.half_range();
         if self.curve.loss(half_range).slope > 0.0 && !path.turns.is_empty() {
@@ -270,7 +272,7 @@ impl HarmonicForce for Masing {
             return;
         }
         let [load, by_middle, by_range] =
-            self.mean_load(motion.residual, path.middle(), half_range);
+            self.mean_load(motion.residual, mean + path.middle(), half_range);
         out.value[0] += load;
         if by_middle != 0.0 || by_range != 0.0 {
             out.active = true;
@@ -284,6 +286,8 @@ impl HarmonicForce for Masing {
     /// A contact that always slips a little: the share of the period in slip is the mean over its
     /// elements, weighted by their stiffness, that is of `L'/k`.
     fn summary(&self, motion: Motion<'_>, out: &mut [PointSummary]) {
+        let mut about_mean = Vec::new();
+        let (_, motion) = motion.about_mean(&mut about_mean);
         let path = Path::new(motion);
         out[0] = PointSummary::default();
         let largest = self.curve.loss(path.half_range()).slope;
@@ -349,8 +353,10 @@ impl HarmonicForce for Masing {
     fn parameter_slope(&self, motion: Motion<'_>, index: usize, out: &mut [f64]) {
         out.fill(0.0);
         let harmonics = motion.table.harmonics();
+        let mut about_mean = Vec::new();
+        let (mean, motion) = motion.about_mean(&mut about_mean);
         let path = Path::new(motion);
-        let (middle, half_range) = (path.middle(), path.half_range());
+        let (middle, half_range) = (mean + path.middle(), path.half_range());
         let of = |u: f64| self.curve.by_parameter(index, u);
         let loops = Loops::new(&self.curve, motion, &path);
         let loads = loops.at_reversals(half_range, of);
