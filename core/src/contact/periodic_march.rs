@@ -56,6 +56,8 @@ pub(super) struct PeriodicMarch {
     pub(super) resolved: bool,
     /// Bound of the elastic forces without any slip.
     pub(super) elastic: f64,
+    /// Rounds until the forces have repeated.
+    pub(super) rounds: usize,
 }
 
 /// A march along one motion.
@@ -82,30 +84,31 @@ impl PeriodicMarch {
     pub(super) fn new(law: &StructuralDamper, motion: Motion<'_>, derivative: Derivative) -> Self {
         let mut march = March::new(law, motion, derivative);
         let sign = if motion.table.harmonics().half_wave() { -1.0 } else { 1.0 };
-        let (mut resolved, mut last_change) = (true, f64::INFINITY);
+        let (mut last_change, mut rounds) = (f64::INFINITY, 0);
         let elastic = march.elastic;
-        for round in 0..MOST_ROUNDS {
+        let resolved = loop {
+            rounds += 1;
             let start = march.jet(0.0);
             let before = march.force_at(&start);
             let gradient = (derivative != Derivative::None).then(|| march.gradient(0.0));
-            resolved = march.round();
+            let resolved = march.round();
             let after = march.force_at(&march.jet(motion.table.harmonics().span()));
             let largest = after.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
             let change =
                 before.iter().zip(&after).map(|(b, a)| (sign * a - b).abs()).fold(0.0, f64::max);
             let periodic = change <= PERIODIC * largest + ROUNDING * elastic;
-            if !resolved || periodic || round + 1 == MOST_ROUNDS {
-                break;
+            if !resolved || periodic || rounds == MOST_ROUNDS {
+                break resolved;
             }
             march.wrap(sign);
             if sign < 0.0 && change > SLOW * last_change {
                 march.average(&start, &before, gradient);
             }
             last_change = change;
-        }
+        };
         let March { sets, mut done, here, slipped, .. } = march;
         done.push(here);
-        Self { sets, stretches: done, slipped, resolved, elastic }
+        Self { sets, stretches: done, slipped, resolved, elastic, rounds }
     }
 
     /// Stretch that holds an angle of the span.

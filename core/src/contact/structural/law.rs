@@ -15,6 +15,9 @@ use faer::Mat;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+/// Rounds of a march as a rule.
+const USUAL_ROUNDS: usize = 2;
+
 impl ContactLaw for StructuralDamper {
     fn name(&self) -> &'static str {
         "structural"
@@ -134,8 +137,9 @@ impl ContactLaw for StructuralDamper {
 }
 
 impl HarmonicForce for StructuralDamper {
-    fn effort(&self, slots: usize, _load: &SlipLoad, tangent: bool) -> f64 {
-        effort_of([1.2e4, 900.0, 12.0], self.displacements() * slots, tangent)
+    fn effort(&self, slots: usize, load: &SlipLoad, tangent: bool) -> f64 {
+        let rounds = load.rounds.max(USUAL_ROUNDS) as f64 / USUAL_ROUNDS as f64;
+        rounds * effort_of([1.2e4, 900.0, 12.0], self.displacements() * slots, tangent)
     }
 
     fn slip_load(&self, motion: Motion<'_>, tangent: bool, out: &mut SlipLoad) {
@@ -143,11 +147,9 @@ impl HarmonicForce for StructuralDamper {
         if motion.displacement.iter().any(|u| !u.is_finite()) {
             return;
         }
-        let march = PeriodicMarch::new(
-            self,
-            motion,
-            if tangent { Derivative::Coefficients } else { Derivative::None },
-        );
+        let derivative = if tangent { Derivative::Coefficients } else { Derivative::None };
+        let march = PeriodicMarch::new(self, motion, derivative);
+        out.rounds = march.rounds;
         if !march.resolved {
             out.value.fill(f64::NAN);
             return;
@@ -238,5 +240,37 @@ impl HarmonicForce for StructuralDamper {
 
     fn parameter_slope(&self, motion: Motion<'_>, index: usize, out: &mut [f64]) {
         self.slope(motion, index, out);
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::contact::Residual;
+    use crate::fourier::{Harmonics, SampleTable};
+    use faer::mat;
+
+    /// Forces that repeat after many rounds, as those of linked points that hardly slip, cost as many.
+    #[test]
+    fn rounds_are_paid_for() {
+        let table = SampleTable::new(Harmonics::new(2, false));
+        let law = StructuralDamper::new(mat![[11.0, -10.0], [-10.0, 11.0]].as_ref(), &[1.0, 1.0]);
+        let law = law.unwrap();
+        let of = |size: f64| {
+            let (sine, cosine) = 0.5_f64.sin_cos();
+            let unit = [0.0, 1.0, 0.0, 0.0, 0.0, 0.0, cosine, -sine, 0.3, 0.0];
+            let displacement = unit.map(|u| size * u);
+            let residual = Residual::Centred;
+            let motion = Motion { table: &table, displacement: &displacement, residual };
+            let mut load = SlipLoad::default();
+            law.slip_load(motion, true, &mut load);
+            (load.rounds, law.effort(5, &load, true))
+        };
+        let (usual, effort) = of(2.0);
+        let hardly = (0..40).map(|n| of(0.12 + 0.005 * f64::from(n)));
+        let (rounds, of_many) = hardly.max_by_key(|(rounds, _)| *rounds).unwrap();
+        assert!(usual == USUAL_ROUNDS && rounds > 10 * usual, "{usual} {rounds}");
+        assert_eq!(of_many / effort, rounds as f64 / usual as f64);
     }
 }
