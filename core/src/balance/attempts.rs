@@ -4,6 +4,7 @@ use super::condensed::{Condensed, Path};
 use super::forced::ForcedBalance;
 use super::limit_load::is_carried_away;
 use super::neighbour::Rough;
+use super::open_mean::is_held_by_contacts;
 use super::settings::{resolving, Method, Resolution};
 use super::solution::{Point, PointStatus};
 use super::unknowns::Unknowns;
@@ -16,6 +17,9 @@ use crate::Error;
 /// Contact displacements over those of the stuck structure at which an undamped resonance counts as
 /// one that friction does not bound.
 const UNBOUNDED: f64 = 1e12;
+
+/// The same at which a body may have gone away: equations that hold but for rounding do not say.
+const AWAY: f64 = 1e6;
 
 /// Residual, relative to the contact displacements, over the tolerance of the last step beyond which a motion is no
 /// solution: 1e-8. Friction leaves 1e-11; rounding at stops 1e9 times as stiff as the structure leaves some 1e-9.
@@ -107,6 +111,12 @@ impl ForcedBalance<'_> {
         *self.carried_away.get_or_init(|| is_carried_away(&self.model))
     }
 
+    /// Whether a body that contacts alone hold goes away at a frequency, so that no motion repeats.
+    fn goes_away(&mut self, omega: f64) -> bool {
+        let held = self.is_monotone() && is_held_by_contacts(self.model.compliance());
+        held && (self.is_carried_away() || self.walks(omega))
+    }
+
     /// Whether a homotopy leads to the solution: it does where there is one alone.
     fn follows(&self) -> bool {
         self.is_monotone()
@@ -135,6 +145,10 @@ impl ForcedBalance<'_> {
         let mut report = self.begin(equations, omega, &mut x, lost);
         if has_failed(&report) && self.has_no_bound(omega) {
             return Ok(Point::empty(omega, PointStatus::Singular, self.observe.len(), contacts));
+        }
+        let far = norm(&x) > AWAY * norm(equations.stuck_response());
+        if (has_failed(&report) || far) && self.goes_away(omega) {
+            return Ok(Point::empty(omega, PointStatus::Free, self.observe.len(), contacts));
         }
         let patient = self.is_worth_a_homotopy(harmonics.highest());
         if has_failed(&report) && start.is_some() && patient {

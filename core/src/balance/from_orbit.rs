@@ -96,6 +96,11 @@ impl ForcedBalance<'_> {
         self.charged(|| orbits.settled(omega, highest))
     }
 
+    /// Whether some body walks at a frequency.
+    pub(super) fn walks(&mut self, omega: f64) -> bool {
+        self.rescue.is_some_and(|orbits| self.charged(|| orbits.walks(omega)))
+    }
+
     /// What a search for an orbit gives, within what is left of the work of the point, and on its account.
     fn charged<T>(&mut self, search: impl FnOnce() -> T) -> T {
         let Some(orbits) = self.rescue else { return search() };

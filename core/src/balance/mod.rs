@@ -102,6 +102,11 @@ pub trait ExactOrbits {
     /// amplitudes up to `highest`, contact after contact.
     fn settled(&self, omega: f64, highest: usize) -> Option<Vec<faer::c64>>;
 
+    /// Whether a body that contacts alone hold walks at a frequency [rad/s]: no motion repeats there.
+    fn walks(&self, _omega: f64) -> bool {
+        false
+    }
+
     /// Work of all orbits that were sought so far \[ns\].
     fn work(&self) -> f64 {
         0.0

@@ -4,6 +4,7 @@ use super::condensed::Condensed;
 use super::linear::Linear;
 use super::statics::FREE;
 use crate::solve::{norm, System as _};
+use crate::structure::Compliance;
 use faer::Mat;
 
 /// Mean of a direction, relative to the motion, that is the walk of a body which contacts alone hold: what
@@ -97,9 +98,13 @@ impl Condensed<'_> {
         self.is_held_by_contacts()
     }
 
-    /// Whether nothing but contacts holds some body.
     fn is_held_by_contacts(&self) -> bool {
-        let lowest = self.model.compliance().lowest_frequencies();
-        lowest.is_some_and(|[stuck, free]| free <= RIGID * stuck)
+        is_held_by_contacts(self.model.compliance())
     }
+}
+
+/// Whether nothing but contacts holds some body.
+pub(super) fn is_held_by_contacts(compliance: &dyn Compliance) -> bool {
+    let lowest = compliance.lowest_frequencies();
+    lowest.is_some_and(|[stuck, free]| free <= RIGID * stuck)
 }

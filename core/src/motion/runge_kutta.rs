@@ -16,6 +16,7 @@ pub(super) type Lanes = [f64; LANES];
 /// Integrates the modes with equal steps; contact forces follow from the laws' return maps from
 /// the start of each step.
 pub(super) struct RungeKutta<'a> {
+    system: &'a ModalSystem,
     equations: Equations<'a>,
     steps: usize,
     step: f64,
@@ -65,24 +66,37 @@ impl<'a> RungeKutta<'a> {
     /// period; forces that follow from the displacements need not be known.
     pub(super) fn new(system: &'a ModalSystem, omega: f64, steps: usize, state: &State) -> Self {
         let equations = Equations::new(system, steps);
-        let motion = lanes(&state.displacement).into_iter().zip(lanes(&state.velocity));
-        let begin = Stage {
-            modes: motion.map(|(x, v)| Modes { x, v, a: [0.0; LANES] }).collect(),
-            contacts: system.contact_displacement(&state.displacement),
-            force: state.force.clone(),
-            memory: state.memory.clone(),
-        };
-        let mut end = begin.clone();
-        equations.follow(&begin, 0.0, &begin, &mut end, 0);
-        Self {
+        let begin = Stage::of(system, state);
+        let mut scheme = Self {
+            system,
             equations,
             steps,
             step: TAU / omega / steps as f64,
             stages: from_fn(|_| begin.clone()),
+            end: begin.clone(),
             begin,
-            end,
             taken: 0,
+        };
+        scheme.restart(state);
+        scheme
+    }
+
+    /// Goes on from a state at the start of a period.
+    pub(super) fn restart(&mut self, state: &State) {
+        self.begin = Stage::of(self.system, state);
+        self.taken = 0;
+        self.equations.follow(&self.begin, 0.0, &self.begin, &mut self.end, 0);
+    }
+
+    /// Displaces modes, as slowly as the contacts need.
+    pub(super) fn carry(&mut self, state: &mut State, by: &[f64]) {
+        self.restart(state);
+        let mut carried = self.begin.clone();
+        for (own, by) in carried.modes.iter_mut().zip(lanes(by)) {
+            own.x = from_fn(|i| own.x[i] + by[i]);
         }
+        self.equations.act(&self.begin, &mut carried);
+        carried.write(state);
     }
 
     /// Steps per period.
@@ -134,6 +148,16 @@ impl<'a> RungeKutta<'a> {
 }
 
 impl Stage {
+    fn of(system: &ModalSystem, state: &State) -> Self {
+        let motion = lanes(&state.displacement).into_iter().zip(lanes(&state.velocity));
+        Self {
+            modes: motion.map(|(x, v)| Modes { x, v, a: [0.0; LANES] }).collect(),
+            contacts: system.contact_displacement(&state.displacement),
+            force: state.force.clone(),
+            memory: state.memory.clone(),
+        }
+    }
+
     /// Displacement and velocity of a shape.
     pub(super) fn along(&self, shape: &[Lanes]) -> [f64; 2] {
         [dot(shape, &self.modes, |own| &own.x), dot(shape, &self.modes, |own| &own.v)]

@@ -9,7 +9,7 @@ use super::settled::Settled;
 use crate::balance::{ExactOrbits, Point, PointStatus, Progress, Unknowns};
 use crate::contact::Residual;
 use crate::model::Model;
-use crate::motion::{State, FASTEST_EXACT};
+use crate::motion::{walks, State, FASTEST_EXACT};
 use faer::c64;
 use std::cell::{Cell, RefCell};
 
@@ -43,7 +43,9 @@ pub struct OrbitInitialGuess<'a> {
     begun: Cell<(f64, bool)>,
     /// Frequency and motion that settled last, if one did: it is asked for with many numbers of harmonics.
     settled: RefCell<Option<(f64, Option<Settled>)>>,
-    /// Operations of motions that were to settle.
+    /// Frequency at which it was last found out whether a body walks, and whether it does.
+    walked: Cell<(f64, bool)>,
+    /// Operations of motions that were to settle, or to walk.
     followed: Cell<f64>,
     /// Operations that the point at hand leaves for a search.
     allowed: Cell<f64>,
@@ -70,6 +72,7 @@ impl<'a> OrbitInitialGuess<'a> {
             missed: Cell::new(f64::NAN),
             begun: Cell::new((f64::NAN, false)),
             settled: RefCell::new(None),
+            walked: Cell::new((f64::NAN, false)),
             followed: Cell::new(0.0),
             allowed: Cell::new(PATIENCE),
         }
@@ -164,6 +167,17 @@ impl ExactOrbits for OrbitInitialGuess<'_> {
         }
         let (_, found) = settled.as_ref()?;
         found.as_ref().map(|motion| motion.amplitudes(highest))
+    }
+
+    fn walks(&self, omega: f64) -> bool {
+        let (known, walked) = self.walked.get();
+        if known == omega {
+            return walked;
+        }
+        let (walked, taken) = walks(self.model, omega, self.patience(), self.progress);
+        self.followed.set(self.followed.get() + taken);
+        self.walked.set((omega, walked));
+        walked
     }
 
     fn work(&self) -> f64 {

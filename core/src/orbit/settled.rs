@@ -3,21 +3,16 @@
 
 use crate::fourier::sampled_amplitudes;
 use crate::model::Model;
-use crate::motion::{transient, ModalSystem, Scheme, TransientSettings};
+use crate::motion::{
+    operations_of_step, steps_of_march, transient, ModalSystem, Scheme, TransientSettings,
+};
 use crate::progress::Progress;
 use faer::c64;
-use std::f64::consts::TAU;
 
 /// Fewest and most periods that are followed, and change over the last one of a motion that has settled.
 const FEWEST_PERIODS: usize = 4;
 const PERIODS: usize = 300;
 const SETTLED: f64 = 1e-3;
-/// Steps of Runge and Kutta in the time in which the fastest mode turns by one radian, and fewest steps per
-/// period.
-const STEPS: f64 = 2.0;
-const FEWEST: usize = 128;
-/// Operations in the time of a return map.
-const PER_MAP: f64 = 150.0;
 /// Samples of the last period.
 const SAMPLES: usize = 256;
 
@@ -41,10 +36,8 @@ impl Settled {
             return (None, 0.0);
         }
         let Ok(system) = ModalSystem::marched(model) else { return (None, 0.0) };
-        let steps = ((STEPS * TAU * system.rate(omega) / omega).ceil() as usize).max(FEWEST);
+        let (steps, of_step) = (steps_of_march(&system, omega), operations_of_step(&system));
         let contacts = system.points();
-        let stage = (2 * system.modes() * (contacts + 1)) as f64 + PER_MAP * contacts as f64;
-        let of_step = 4.0 * stage;
         let periods = PERIODS.min((operations / (of_step * steps as f64)) as usize);
         if periods < FEWEST_PERIODS {
             return (None, 0.0);

@@ -98,10 +98,11 @@ class Status(Ending):
     )
     FREE = (
         "free",
-        "Not solved: on the way contacts slip or open until nothing holds the mean position of a "
-        "body that they alone hold, and it may walk. Begin at an omega where they stick and take "
-        "small steps, ground the body, if softly, raise preload or friction, or see with transient "
-        "where it goes.",
+        "Not solved: contacts alone hold a body, and slip or open until nothing holds its mean "
+        "position; its static load, or the asymmetry of its loads or contacts, may make it walk, "
+        "and no motion repeats. Lower the static load, ground the body, if softly, raise preload "
+        "or friction, begin at an omega where contacts stick and take small steps, or see with "
+        "transient where it goes.",
     )
     HISTORY = (
         "history",
