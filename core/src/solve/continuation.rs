@@ -70,7 +70,7 @@ pub struct Continuation {
     direction: Vec<f64>,
     /// Sign of the determinant of the equations bordered by the tangent in the direction of the
     /// walk: it is the same all along a curve, around folds and past corners. 0 where it is not known.
-    orientation: f64,
+    pub(crate) orientation: f64,
     step: f64,
     steps: Steps,
     /// Short steps in a row.
@@ -294,7 +294,7 @@ pub fn tangent(
 }
 
 /// The tangent with the orientation of the curve in its direction.
-fn oriented(
+pub(crate) fn oriented(
     curve: &mut dyn Curve,
     z: &[f64],
     weights: &[f64],

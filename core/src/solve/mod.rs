@@ -27,6 +27,7 @@ pub(crate) use branch::{between, vertex};
 pub use branch::{Bounds, Branch, End};
 pub(crate) use brent::brent;
 pub use broyden::{broyden, BroydenEffort, FirstJacobian};
+pub(crate) use continuation::oriented;
 pub use continuation::{across, at_parameter, tangent, Advance, Continuation, Steps};
 pub use curve::Curve;
 pub use cyclic_scalars::{CyclicScalars, ScalarRow};

@@ -10,7 +10,7 @@ use crate::balance::keep;
 use crate::balance::settings::Resolution;
 use crate::balance::solution::{CurveEnd, Point, PointStatus};
 use crate::balance::tangent::distance;
-use crate::solve::{across, between, Advance, Continuation, Curve as _, Steps};
+use crate::solve::{between, Advance, Continuation, Curve as _, Steps};
 use crate::Error;
 use std::sync::Arc;
 
@@ -34,14 +34,16 @@ const SHORT: f64 = 1e-4;
 pub(super) struct Walk<'a, 'b> {
     pub(super) balance: &'b mut ForcedBalance<'a>,
     pub(super) points: Vec<Arc<Point>>,
+    /// Orientation of the curve in its direction, the same in whatever harmonics; 0 where it is not known.
+    pub(super) orientation: f64,
     /// Whether it began inside the range.
     pub(super) inside: bool,
     /// Resonances with their bandwidths.
     stops: Vec<(f64, f64)>,
     pub(super) bounds: (f64, f64),
     longest: f64,
-    /// Number of points when the resolution was last raised.
-    raised: usize,
+    /// Number of points when the resolution was last raised, or could not be lowered.
+    pub(super) raised: usize,
     /// Evaluations of the equations at the resolutions so far.
     evaluations: usize,
 }
@@ -128,15 +130,24 @@ impl<'a, 'b> Walk<'a, 'b> {
         points: Vec<Arc<Point>>,
         bounds: (f64, f64),
     ) -> Self {
-        let (stops, longest) = (Vec::new(), 0.0);
-        Self { balance, points, inside: false, stops, bounds, longest, raised: 0, evaluations: 0 }
+        Self {
+            balance,
+            points,
+            orientation: 0.0,
+            inside: false,
+            stops: Vec::new(),
+            bounds,
+            longest: 0.0,
+            raised: 0,
+            evaluations: 0,
+        }
     }
 }
 
 impl Walk<'_, '_> {
     fn follow(&mut self, from: f64, to: f64) -> Result<CurveEnd, Error> {
         let mut resolution = self.points[0].resolution();
-        let mut walk: Option<Continuation> = None;
+        let mut walk: Option<(Continuation, Resolution)> = None;
         let ask = self.balance.interruption();
         // Each round at one resolution.
         loop {
@@ -144,26 +155,22 @@ impl Walk<'_, '_> {
             let model = self.balance.evaluated(resolution.samples)?;
             let residual = self.balance.settings.residual;
             let mut curve = ForcedCurve::new(model, &table, residual, &ask);
-            let last = &self.points[self.points.len() - 1];
+            let last = self.last();
             let Some(unknowns) = &last.unknowns else { return Ok(CurveEnd::Stalled) };
             let here = curve.point(unknowns, last.omega);
             let mut ahead = match walk.take() {
                 None => Continuation::new(&mut curve, here, (to - from).signum(), STEPS),
-                Some(mut walk) => {
-                    let before = self.points.iter().rev().nth(1);
-                    if let Some((before, known)) = before.and_then(|p| Some((p, p.unknowns()?))) {
-                        let before = curve.point(known, before.omega);
-                        // Neither lies on the curve of another resolution: steps that are shorter
-                        // than the distance of the two curves would not find it.
-                        let [before, here] = [0.0, 1.0].map(|share| {
-                            let known = if share == 0.0 { &before } else { &here };
-                            curve.accept(known);
-                            across(&mut curve, &before, &here, share)
-                                .unwrap_or_else(|| known.clone())
-                        });
-                        walk.restart(&mut curve, &before, &here);
+                Some((known, before)) => {
+                    let finest = resolution.or_finer(before);
+                    match self.beside(&mut curve, &known, &here) {
+                        (ahead, true) => ahead,
+                        (ahead, false) if finest == resolution => ahead,
+                        (_, false) => {
+                            self.raised = self.points.len();
+                            (resolution, walk) = (finest, Some((known, finest)));
+                            continue;
+                        }
                     }
-                    walk
                 }
             };
             let change = self.stretch(&mut curve, &mut ahead, resolution, (from, to))?;
@@ -172,9 +179,11 @@ impl Walk<'_, '_> {
             self.balance.add_profile(&profile);
             match change {
                 Change::Ends(end) => return Ok(end),
-                Change::Resolution(next) => resolution = next,
+                Change::Resolution(next) => {
+                    walk = Some((ahead, resolution));
+                    resolution = next;
+                }
             }
-            walk = Some(ahead);
         }
     }
 
@@ -227,7 +236,11 @@ impl Walk<'_, '_> {
             let Some(mut point) = self.solved(curve, &z, resolution, iterations)? else {
                 return Ok(Change::Ends(CurveEnd::Interrupted));
             };
-            let kept = self.climb(curve, &mut point, resolution)?;
+            self.orientation = walk.orientation;
+            let (kept, lacking) = self.climb(curve, &mut point, resolution)?;
+            if let Some(raised) = lacking.map(|more| self.retreat(more)).transpose()?.flatten() {
+                return Ok(Change::Resolution(raised));
+            }
             if end.is_none() && kept == resolution {
                 let tolerance = self.balance.settings.tolerance;
                 let error = self.line_error(&point, length).unwrap_or(0.81 * tolerance);

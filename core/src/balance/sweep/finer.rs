@@ -9,25 +9,26 @@ use crate::solve::{across, between};
 use crate::Error;
 
 impl Walk<'_, '_> {
-    /// Has a point of the curve be one of as much resolution as it lacks, and tells that.
+    /// Has a point of the curve be one of as much resolution as it lacks, and tells that, and whether more would
+    /// be needed whose curve does not come by.
     pub(super) fn climb(
         &mut self,
         curve: &mut ForcedCurve<'_>,
         point: &mut Point,
         at: Resolution,
-    ) -> Result<Resolution, Error> {
+    ) -> Result<(Resolution, Option<Resolution>), Error> {
         let mut kept = at;
         self.judge_beside(curve, point, at)?;
         while let Some(more) = self.wanted(point, kept) {
-            kept = more;
-            let Some(finer) = self.finer(point, kept)?.filter(Point::is_solved) else {
+            let Some(finer) = self.finer(point, more)?.filter(Point::is_solved) else {
                 // What is solved stands, with the status that it has over given frequencies.
                 point.status = PointStatus::EffortLimit;
-                break;
+                self.balance.control.stay(kept);
+                return Ok((kept, Some(more)));
             };
-            *point = finer;
+            (kept, *point) = (more, finer);
         }
-        Ok(kept)
+        Ok((kept, None))
     }
 
     /// The resolution that a solved point lacks, if any.
@@ -53,7 +54,11 @@ impl Walk<'_, '_> {
     }
 
     /// The point of the curve of another resolution on the plane across the way to a point.
-    fn finer(&mut self, point: &Point, resolution: Resolution) -> Result<Option<Point>, Error> {
+    pub(super) fn finer(
+        &mut self,
+        point: &Point,
+        resolution: Resolution,
+    ) -> Result<Option<Point>, Error> {
         let table = self.balance.table(resolution.harmonics);
         let model = self.balance.evaluated(resolution.samples)?;
         let ask = self.balance.interruption();
@@ -66,7 +71,8 @@ impl Walk<'_, '_> {
         // The plane may meet it beyond the end of the range, where the point lies.
         let found = found.filter(inside);
         let found = found.or_else(|| Some(between(&mut curve, &before, &at, point.omega)?.0));
-        let Some(z) = found else { return Ok(None) };
+        let ahead = |z: &Vec<f64>| self.is_ahead(&mut curve, &before, z);
+        let Some(z) = found.filter(ahead) else { return Ok(None) };
         let mut solved = self.solved(&mut curve, &z, resolution, point.iterations)?;
         if let Some(finer) = &mut solved {
             self.judge_beside(&mut curve, finer, resolution)?;

@@ -13,6 +13,7 @@ mod further;
 mod given;
 mod join;
 mod load_curve;
+mod resolution_change;
 mod seams;
 mod stops;
 mod turns;
