@@ -92,7 +92,8 @@ class Status(Ending):
     EFFORT_LIMIT = (
         "effort limit",
         "Given up early: more harmonics, and an exact orbit, would have cost far more than those "
-        "that are kept, as where omega is low or contacts are nearly rigid. Read error_estimate; "
+        "that are kept, as where omega is low or contacts are nearly rigid, or more harmonics led "
+        "to no motion like this one, as where a curve has many folds. Read error_estimate; "
         "raise tolerance, name in observe only the dofs that matter, give a number of harmonics, "
         "or condense light or nearly rigid dofs statically.",
     )
