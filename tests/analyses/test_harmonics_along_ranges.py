@@ -13,7 +13,7 @@ def four(mass, stiffness, damping, contacts, forces):
 
 
 def between_two_bodies():
-    """A contact of varying normal load: with three harmonics the curve passes four folds of the others."""
+    """With three harmonics the curve passes by four folds of those with more."""
     stiffness = [
         [769400.0, -605700.0, -127300.0, 0.0],
         [-605700.0, 1254000.0, -636500.0, 0.0],

@@ -4,7 +4,7 @@
 use super::first_look::{Aim, FirstLook, Precision};
 use super::samples::Sample;
 use super::search::{Found, Search};
-use super::upper_branch::{nearer, upper_branch};
+use super::upper_branch::upper_branch;
 use crate::balance::{
     Evaluation, ForcedBalance, HarmonicChoice, Point, PointStatus, Progress, Resolution, Settings,
     WarmStart,
@@ -256,9 +256,11 @@ impl<'a> PeakSearch<'a> {
 
     /// Searches, where laws are not monotone among the largest motions.
     fn search(&mut self, model: &Model, resolution: Resolution) -> Result<Option<Found>, Error> {
-        let seeds = std::mem::take(&mut self.seeds);
-        let Some(found) = self.search_from(model, resolution, &seeds)? else { return Ok(None) };
-        if model.is_monotone() || (found.settled && !found.torn) {
+        let (seeds, several) = (std::mem::take(&mut self.seeds), !model.is_monotone());
+        let Some(found) = self.search_from(model, resolution, &seeds, several)? else {
+            return Ok(None);
+        };
+        if !several || (found.settled && !found.torn) {
             return Ok(Some(found));
         }
         let largest = upper_branch(
@@ -269,11 +271,15 @@ impl<'a> PeakSearch<'a> {
         )?;
         self.points += largest.points;
         self.memory.profile.add(&largest.profile);
-        if largest.samples.len() < 2 {
-            return Ok((!self.is_ended()).then_some(found));
+        if self.is_ended() {
+            return Ok(None);
         }
-        let again = self.search_from(model, resolution, &largest.samples)?;
-        Ok(again.map(|again| nearer(found, again, &largest.heights)))
+        if largest.complete {
+            return Ok(Some(found.with_higher(largest.tops)));
+        }
+        let seeds = if largest.samples.len() < 2 { &seeds } else { &largest.samples };
+        let again = self.search_from(model, resolution, seeds, false)?;
+        Ok(again.map(|again| again.with_higher(largest.tops)))
     }
 
     fn is_ended(&self) -> bool {
@@ -285,6 +291,7 @@ impl<'a> PeakSearch<'a> {
         model: &Model,
         resolution: Resolution,
         seeds: &[Sample],
+        until_torn: bool,
     ) -> Result<Option<Found>, Error> {
         let settings = self.settings.at(resolution);
         let orbits = OrbitInitialGuess::new(model, settings.residual, &[], self.progress);
@@ -300,7 +307,8 @@ impl<'a> PeakSearch<'a> {
         let aim = self.quest.aim(self.precision);
         let table = balance.table(resolution.harmonics);
         let look = FirstLook::new(model, &aim, table.harmonics().orders(), seeds)?;
-        let search = Search::new(settings.residual, &aim, look.narrowest(), &mut balance);
+        let mut search = Search::new(settings.residual, &aim, look.narrowest(), &mut balance);
+        search.until_torn = until_torn;
         let found = search.run(&look, seeds)?;
         self.points += found.as_ref().map_or(0, |found| found.samples.len());
         self.memory = balance.into_memory();

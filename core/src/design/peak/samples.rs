@@ -69,3 +69,20 @@ pub(crate) fn predicted(samples: &[Sample], omega: f64) -> Option<Unknowns> {
         (None, None) => None,
     }
 }
+
+/// A start from a similar response: its solution, moved by as much as the nearest sample
+/// differs from it.
+pub(super) fn beside(samples: &[Sample], seeds: &[Sample], omega: f64) -> Option<Unknowns> {
+    let mut start = predicted(seeds, omega)?;
+    let distance = |sample: &Sample| (sample.at - omega).abs();
+    let nearest = samples.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+    if let Some(near) = nearest {
+        let similar = predicted(seeds, near.at)?.recast(near.unknowns.harmonics());
+        let harmonics = near.unknowns.harmonics().clone();
+        let values = start.recast(&harmonics);
+        let moves = near.unknowns.values().iter().zip(&similar);
+        let values = values.iter().zip(moves).map(|(x, (new, old))| x + (new - old));
+        start = Unknowns::new(harmonics, values.collect());
+    }
+    Some(start)
+}

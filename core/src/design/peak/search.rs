@@ -11,7 +11,7 @@ use super::envelope::{Envelope, Gap};
 use super::first_look::{Aim, Candidate, FirstLook, SEEN};
 use super::interpolant::Knot;
 use super::overlay::Overlay;
-use super::samples::{predicted, Sample};
+use super::samples::{beside, predicted, Sample};
 use crate::balance::{ForcedBalance, Linearised, Point, PointStatus, Unknowns};
 use crate::contact::Residual;
 use crate::fourier::Measure;
@@ -87,6 +87,8 @@ pub(super) struct Search<'a, 'b> {
     pub(super) envelope: Envelope,
     /// Narrowest bandwidth, relative to the frequency.
     pub(super) narrowest: f64,
+    /// Whether it ends, and tells no doubt, where neighbours are on different branches or lead to no motion.
+    pub(super) until_torn: bool,
     /// Points without a solution.
     failures: usize,
     /// How the last of them ended.
@@ -121,6 +123,7 @@ impl<'a, 'b> Search<'a, 'b> {
             balance,
             envelope,
             narrowest,
+            until_torn: false,
             failures: 0,
             failure: None,
             lower_onsets: Vec::new(),
@@ -149,7 +152,7 @@ impl<'a, 'b> Search<'a, 'b> {
         }
         let mut open: Vec<&Candidate> = look.candidates.iter().collect();
         open.sort_by(|a, b| b.highest().total_cmp(&a.highest()));
-        let mut splits = 0;
+        let (mut splits, mut torn) = (0, false);
         while !self.is_interrupted() {
             let heights: Vec<f64> =
                 (0..look.unbounded.len()).map(|i| self.envelope.height(i)).collect();
@@ -165,24 +168,33 @@ impl<'a, 'b> Search<'a, 'b> {
                 }
                 break;
             };
-            match self.inside(interval, share)? {
+            torn = self.until_torn && self.is_torn_at(interval)?;
+            let inside = if torn { None } else { self.inside(interval, share)? };
+            torn = self.until_torn && inside.is_none();
+            match inside {
                 Some(sample) => self.envelope.split(interval, sample),
                 None => self.envelope.close(interval),
             }
             splits += 1;
+            if torn {
+                break;
+            }
         }
+        let settled = !torn
+            && (0..look.unbounded.len())
+                .all(|group| look.unbounded[group].is_some() || self.doubt(group).is_none());
         let groups = look.unbounded.iter().enumerate();
-        let doubts = groups.map(|(group, at)| unbounded(at).or_else(|| self.doubt(group)));
+        let doubt = |group| if self.until_torn { None } else { self.doubt(group) };
+        let doubts = groups.map(|(group, at)| unbounded(at).or_else(|| doubt(group)));
         let doubts: Vec<Option<Doubt>> = doubts.collect();
         for (group, _) in doubts.iter().enumerate().filter(|(_, doubt)| doubt.is_none()) {
             self.polish(group)?;
         }
-        let torn = !self.balance.is_monotone() && self.is_torn()?;
+        let looked_at = torn || (self.until_torn && !settled) || self.balance.is_monotone();
+        torn = torn || (!looked_at && self.is_torn()?);
         if self.is_interrupted() {
             return Ok(None);
         }
-        let mut known = doubts.iter().zip(&look.unbounded);
-        let settled = known.all(|(doubt, at)| doubt.is_none() || at.is_some());
         let top = |group| self.envelope.top(group).map(|(sample, curve)| Top { sample, curve });
         let tops: Option<Vec<Top>> = (0..doubts.len()).map(top).collect();
         Ok(tops.map(|tops| {
@@ -201,7 +213,7 @@ impl<'a, 'b> Search<'a, 'b> {
         if self.is_interrupted() || self.failures > MOST_FAILURES {
             return Ok(false);
         }
-        let start = self.beside(seeds, omega);
+        let start = beside(&self.envelope.samples, seeds, omega);
         let sample = self.solve(omega, start)?;
         let solved = sample.is_some();
         sample.into_iter().for_each(|sample| self.envelope.insert(sample));
@@ -294,21 +306,24 @@ impl<'a, 'b> Search<'a, 'b> {
     pub(super) fn inside(&mut self, interval: usize, share: f64) -> Result<Option<Sample>, Error> {
         let [left, right] = [interval, interval + 1].map(|i| self.envelope.samples[i].at);
         for share in [share, 0.5 * share, 0.5 * (1.0 + share)] {
-            let solved = self.solve(left + share * (right - left), None)?;
+            let omega = left + share * (right - left);
+            let solved = if self.until_torn {
+                let start = predicted(&self.envelope.samples, omega);
+                self.attempt(omega, start.as_ref())?
+            } else {
+                self.solve(omega, None)?
+            };
             let sample = solved.filter(|sample| left < sample.at && sample.at < right);
-            if sample.is_some() || self.is_interrupted() || self.failures > MOST_FAILURES {
+            // What neighbours do not lead to may have no motion on their branch.
+            if sample.is_some()
+                || self.until_torn
+                || self.is_interrupted()
+                || self.failures > MOST_FAILURES
+            {
                 return Ok(sample);
             }
         }
         Ok(None)
-    }
-
-    /// A point in the middle between two others.
-    pub(super) fn between(&mut self, a: &Sample, b: &Sample) -> Result<Option<Sample>, Error> {
-        let omega = 0.5 * (a.at + b.at);
-        let start = predicted(&[a.clone(), b.clone()], omega);
-        let found = self.attempt(omega, start.as_ref())?;
-        Ok(found.filter(|one| a.at < one.at && one.at < b.at))
     }
 
     /// Solves at one frequency: from `start` or the samples around it, from the stuck response,
@@ -335,7 +350,11 @@ impl<'a, 'b> Search<'a, 'b> {
     }
 
     /// Solves at one frequency from one start.
-    fn attempt(&mut self, omega: f64, start: Option<&Unknowns>) -> Result<Option<Sample>, Error> {
+    pub(super) fn attempt(
+        &mut self,
+        omega: f64,
+        start: Option<&Unknowns>,
+    ) -> Result<Option<Sample>, Error> {
         let point = self.balance.solve_beside(omega, ASIDE * omega, start)?;
         self.sampled(&point)
     }
@@ -370,23 +389,5 @@ impl<'a, 'b> Search<'a, 'b> {
         let slips = point.contacts.iter().map(|one| one.slip_fraction > 0.0).collect();
         let (unknowns, rate) = (unknowns.clone(), jets.rate);
         Ok(Some(Sample { at, knots, overlays, unknowns, rate, slips }))
-    }
-
-    /// A start from a similar response: its solution, moved by as much as the nearest sample
-    /// differs from it.
-    fn beside(&self, seeds: &[Sample], omega: f64) -> Option<Unknowns> {
-        let mut start = predicted(seeds, omega)?;
-        let distance = |sample: &Sample| (sample.at - omega).abs();
-        let nearest =
-            self.envelope.samples.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
-        if let Some(near) = nearest {
-            let similar = predicted(seeds, near.at)?.recast(near.unknowns.harmonics());
-            let harmonics = near.unknowns.harmonics().clone();
-            let values = start.recast(&harmonics);
-            let moves = near.unknowns.values().iter().zip(&similar);
-            let values = values.iter().zip(moves).map(|(x, (new, old))| x + (new - old));
-            start = Unknowns::new(harmonics, values.collect());
-        }
-        Some(start)
     }
 }
