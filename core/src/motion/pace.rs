@@ -1,31 +1,11 @@
 //! How fast a model can move.
 
-use super::modal_system::ModalSystem;
 use crate::model::Model;
 use crate::structure::ModalDamping;
-use std::f64::consts::TAU;
 
 /// Highest rate of a motion over the frequency of its period that the exact flow follows: ten thousand steps per
 /// period.
 pub(crate) const FASTEST_EXACT: f64 = 3e4;
-
-/// Steps of Runge and Kutta in the time in which the fastest mode turns by one radian, and fewest steps per
-/// period, of a motion that need not be precise.
-const STEPS: f64 = 2.0;
-const FEWEST: usize = 128;
-/// Operations in the time of a return map.
-const PER_MAP: f64 = 150.0;
-
-/// Steps per period of such a motion that is excited at `omega` [rad/s].
-pub(crate) fn steps_of_march(system: &ModalSystem, omega: f64) -> usize {
-    ((STEPS * TAU * system.rate(omega) / omega).ceil() as usize).max(FEWEST)
-}
-
-/// Operations of one of them.
-pub(crate) fn operations_of_step(system: &ModalSystem) -> f64 {
-    let points = system.points();
-    4.0 * ((2 * system.modes() * (points + 1)) as f64 + PER_MAP * points as f64)
-}
 
 /// Rates at which the DOFs move while all others are fixed [1/s].
 pub(super) fn dof_rates(model: &Model) -> Vec<f64> {

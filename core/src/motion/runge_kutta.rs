@@ -13,6 +13,24 @@ const LANES: usize = 4;
 /// A number of each of some modes; those that are missing have zeros.
 pub(super) type Lanes = [f64; LANES];
 
+/// Steps of Runge and Kutta in the time in which the fastest mode turns by one radian, and fewest steps per
+/// period, of a motion that need not be precise.
+const STEPS: f64 = 2.0;
+const FEWEST: usize = 128;
+/// Operations in the time of a return map.
+const PER_MAP: f64 = 150.0;
+
+/// Steps per period of such a motion that is excited at `omega` [rad/s].
+pub(crate) fn steps_of_march(system: &ModalSystem, omega: f64) -> usize {
+    ((STEPS * TAU * system.rate(omega) / omega).ceil() as usize).max(FEWEST)
+}
+
+/// Operations of one of them.
+pub(crate) fn operations_of_step(system: &ModalSystem) -> f64 {
+    let points = system.points();
+    4.0 * ((2 * system.modes() * (points + 1)) as f64 + PER_MAP * points as f64)
+}
+
 /// Integrates the modes with equal steps; contact forces follow from the laws' return maps from
 /// the start of each step.
 pub(super) struct RungeKutta<'a> {

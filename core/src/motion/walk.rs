@@ -9,8 +9,7 @@
 //! steps of time. The drift counts if half the step leaves it as it is.
 
 use super::modal_system::ModalSystem;
-use super::pace::{operations_of_step, steps_of_march};
-use super::runge_kutta::RungeKutta;
+use super::runge_kutta::{operations_of_step, steps_of_march, RungeKutta};
 use super::state::State;
 use super::transition::Transition;
 use crate::model::Model;

@@ -2,22 +2,33 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stickslip.errors import ModelError
-from stickslip.fe.reduced_modes import RIGID, natural_modes
-from stickslip.fe.sparse import Factor
-
-if TYPE_CHECKING:
-    from stickslip.fe.reduction import Reduction
+from stickslip.fe.reduced_modes import RIGID, Reduced, natural_modes
+from stickslip.fe.sparse import CscArray, Factor
 
 ACCURATE = 0.01
 """Share by which natural frequencies may be too high."""
 
 
-def accurate_to(reduction: Reduction, factor: Factor) -> float:
+class Recovered(Reduced, Protocol):
+    """A reduced structure with the full one."""
+
+    full_mass: CscArray
+    full_stiffness: CscArray
+    rows: NDArray[np.int64]
+    size: int
+
+    def recover(self, reduced: NDArray[np.float64]) -> NDArray[np.generic]:
+        """Displacements of all degrees of freedom."""
+        ...
+
+
+def accurate_to(reduction: Recovered, factor: Factor) -> float:
     """Return the angular frequency up to which natural frequencies are accurate.
 
     They are those with a free boundary: whatever holds it makes the error smaller. A reduced mode
