@@ -88,6 +88,7 @@ def test_uniqueness_is_asked_of_the_laws():
     )
     assert uniqueness(asked).code == "law-not-monotone"
     assert "contact law 'stop' is not monotone" in uniqueness(asked).text
+    assert "may peak higher" in uniqueness(asked, peaks=True).text
 
 
 def test_missed_tolerances_are_counted():

@@ -44,9 +44,9 @@ RIGID = 1e5
 """Stiffness of a contact, over that of the structure at its DOFs, up to which motions are found."""
 
 
-def doubts(model: Model) -> tuple[Diagnostic | None, ...]:
+def doubts(model: Model, *, peaks: bool = False) -> tuple[Diagnostic | None, ...]:
     """Say what of laws, damping and stiffness puts a steady motion in doubt."""
-    return uniqueness(model), *structure_doubts(model)
+    return uniqueness(model, peaks=peaks), *structure_doubts(model)
 
 
 def structure_doubts(model: Model) -> tuple[Diagnostic | None, ...]:
@@ -169,14 +169,15 @@ def _flat_faces(model: Model) -> Diagnostic | None:
     return None
 
 
-def uniqueness(model: Model) -> Diagnostic | None:
-    """Say that a solution need not be the only one, if contact laws or damping leave that open.
+def uniqueness(model: Model, *, peaks: bool = False) -> Diagnostic | None:
+    """Say that a solution, or a peak, need not be the only one: laws or damping leave that open.
 
     The passive structure with laws that are monotone operators has one steady motion.
     """
     open_laws = list(dict.fromkeys(model.problem.laws_not_monotone))
     if open_laws:
-        return told("law-not-monotone", _laws=listed(open_laws))
+        kind = "law-not-monotone/peaks" if peaks else "law-not-monotone"
+        return told(kind, _laws=listed(open_laws))
     damped = model.structure.is_damped
     if damped is None:
         return told("undamped-motion")

@@ -31,7 +31,7 @@ def damper_assumptions(
             *_peaks(settings, arrays, "values"),
             _truncation_of_peaks(settings, arrays),
             settings.bounds and bounds_of(arrays, "bounds/peaks"),
-            *doubts(model),
+            *doubts(model, peaks=True),
             few_modes(model, arrays.omega),
             direct_assumption(model),
         )

@@ -103,6 +103,8 @@ TEXTS = {
     "observed-dofs": "Only {kept} of {total} dofs are kept in the result: {_listed}.",
     "law-not-monotone": "The contact law {_laws} is not monotone in the motion: the solution may "
     "be unstable or not the only one.",
+    "law-not-monotone/peaks": "The contact law {_laws} is not monotone in the motion: a branch to "
+    "which the curve does not lead may peak higher. forced_response over the range looks for such.",
     "rigid-contacts": "Nearly rigid: {_names}, up to {ratio:.1e} times as stiff as the structure "
     "there, and {points} {_are} not solved to the tolerance. Up to {_limit:.0e} times as stiff, "
     "motions are found. Lower the stiffness, which changes the motion by some thousandths, or try "
