@@ -297,6 +297,22 @@ fn a_matrix_that_has_grown_too_large_gives_way_to_products_again() {
     }
 }
 
+#[test]
+fn no_jacobian_is_formed_for_what_is_held_to_few_products() {
+    let model = model(jenkins(130), Damping::Mass, 0.0);
+    let table = SampleTable::new(Harmonics::new(5, true));
+    for held in [false, true] {
+        let mut equations = Condensed::new(&model, &table, Residual::Centred, false);
+        equations.set_omega(9.0).unwrap();
+        if held {
+            equations.hold_to_products(1);
+        }
+        let (found, _) = direction(&mut equations, 1e4);
+        assert_eq!([found, equations.lacks_direction()], [!held, held]);
+        assert!(!held || !equations.form_instead());
+    }
+}
+
 /// A chain that its contacts alone hold, all of which slip: nothing holds its mean, whatever form the
 /// Jacobian has.
 #[test]
