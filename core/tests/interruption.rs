@@ -146,7 +146,7 @@ fn bounds_of_peaks_that_are_ended_are_none() {
     let target = Target { dof: 0, measure: Measure::HalfRange, span: (8.0, 22.0) };
     let settings = Settings { tolerance: 1e-2, ..fixed(3) };
     let work = |look: &Progress<'_>| {
-        let asked = (&[1.0, 1.5][..], false);
+        let asked = (&[0.4, 0.6][..], false);
         let by = Variation::Level;
         bounded_peak_curve(&model, settings, &by, asked, &target, look, None).unwrap()
     };
