@@ -283,7 +283,7 @@ fn of_extended(
             break;
         }
     }
-    let all = found.errors.iter_mut().chain(&mut found.first);
+    let all = found.errors.iter_mut().chain(&mut found.first).chain([&mut found.contacts]);
     all.for_each(|error| *error *= extension.unseen);
     Ok(Some(found))
 }

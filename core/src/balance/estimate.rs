@@ -202,7 +202,8 @@ impl ForcedBalance<'_> {
             return Ok(None);
         };
         let unseen = self.unseen_of_massless(&solution.harmonics, &extension);
-        found.errors.iter_mut().chain(&mut found.first).for_each(|error| *error *= unseen);
+        let all = found.errors.iter_mut().chain(&mut found.first).chain([&mut found.contacts]);
+        all.for_each(|error| *error *= unseen);
         Ok(Some(found))
     }
 

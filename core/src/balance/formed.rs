@@ -4,7 +4,7 @@
 
 use super::condensed::Condensed;
 use super::linear::{Factor, Linear};
-use super::modal_work::{is_cheaper_formed, may_be_formed};
+use super::modal_work::{is_cheaper_formed, may_be_formed, ByProducts};
 use crate::contact::SlipLoad;
 use faer::Mat;
 
@@ -28,9 +28,10 @@ impl Condensed<'_> {
         self.form()
     }
 
-    /// Whether products led to no direction, which is no sign of a singular Jacobian.
+    /// Whether products led to no last direction, which is no sign of a singular Jacobian.
     pub(super) fn lacks_direction(&self) -> bool {
-        matches!(self.linear, Linear::Modal(_)) && self.by_products.failures > 0
+        let ByProducts { last, failures, .. } = self.by_products;
+        matches!(self.linear, Linear::Modal(_)) && failures > 0 && last == 0
     }
 
     /// Takes dense receptances from the next Jacobian on, if the last direction took so many products that

@@ -68,15 +68,9 @@ pub(super) fn is_large(compliance: &dyn Compliance, harmonics: &Harmonics) -> bo
 /// About the time of a Newton step of some contacts that slip, on a common processor \[ns\]; a law couples so
 /// many of them.
 pub(super) fn of_step(compliance: &dyn Compliance, slots: f64, slipping: f64, coupled: f64) -> f64 {
-    let Some(modes) = compliance.contact_modes() else { return 0.0 };
-    let contacts = compliance.contacts() as f64;
-    let whole = PER_OPERATION * 2.0 * modes.work(contacts, slots);
-    let product = PER_OPERATION * modes.work(slipping, slots);
-    if coupled > 1.0 {
-        let tangents = PER_ENTRY * slipping * coupled * slots * slots;
-        return whole + PRODUCTS_OF_COUPLED * (product + tangents);
-    }
-    whole + PRODUCTS_OF_STEP * product
+    let products = if coupled > 1.0 { PRODUCTS_OF_COUPLED } else { PRODUCTS_OF_STEP };
+    let of = of_products(compliance, slots, slipping, coupled);
+    of.map_or(0.0, |[whole, product]| whole + products * product)
 }
 
 /// Products of a Newton step that takes so long, its laws left out \[ns\].
@@ -87,12 +81,22 @@ pub(super) fn products_within(
     slipping: f64,
     coupled: f64,
 ) -> f64 {
-    let of = |contacts: f64| {
-        let modes = compliance.contact_modes();
-        modes.map_or(0.0, |modes| PER_OPERATION * modes.work(contacts, slots))
-    };
+    let of = of_products(compliance, slots, slipping, coupled);
+    of.map_or(0.0, |[whole, product]| (time - whole) / product)
+}
+
+/// Of the products of a step with all contacts, and of one with those that slip.
+fn of_products(
+    compliance: &dyn Compliance,
+    slots: f64,
+    slipping: f64,
+    coupled: f64,
+) -> Option<[f64; 2]> {
+    let modes = compliance.contact_modes()?;
+    let [whole, product] = [compliance.contacts() as f64, slipping]
+        .map(|contacts| PER_OPERATION * modes.work(contacts, slots));
     let tangents = if coupled > 1.0 { PER_ENTRY * slipping * coupled * slots * slots } else { 0.0 };
-    (time - 2.0 * of(compliance.contacts() as f64)) / (of(slipping) + tangents)
+    Some([2.0 * whole, product + tangents])
 }
 
 /// Whether the Jacobian of so many points that slip, among all, may be formed after all.

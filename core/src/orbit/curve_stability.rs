@@ -112,11 +112,11 @@ fn relative_error(point: &Point) -> f64 {
     }
 }
 
-/// What the estimate gives of the contacts, which the observed DOFs may not feel.
+/// What the estimate gives of the contacts, which the observed DOFs may not feel; infinite without one.
 fn contact_error(model: &Model, settings: Settings, point: &Point, progress: &Progress<'_>) -> f64 {
     let balance = ForcedBalance::new(model, settings, &[]);
     let error = balance.ok().and_then(|balance| balance.watched(progress).contact_error(point));
-    error.unwrap_or(0.0)
+    error.unwrap_or(f64::INFINITY)
 }
 
 /// The point with about twice as many harmonics; nothing if it cannot be solved.

@@ -274,7 +274,7 @@ def reduction_of(dataset: Stored) -> Reduction:
     made.row_names = tuple(map(str, dataset["row_names"].values)) if named else None
     first, second = map(float, dataset.attrs["asymmetry"])
     made.asymmetry, made.decoupling = (first, second), float(dataset.attrs["decoupling"])
-    made.accurate_to = float(dataset.attrs["accurate_to"])
+    made.accurate_to = float(dataset.attrs.get("accurate_to", np.inf))
     shapes = made.mass.shape, made.stiffness.shape, made.rows.shape
     if shapes != ((count, count), (count, count), (len(made.boundary),)):
         raise ValueError(f"matrices of shape {shapes[0]} for {count} columns of the basis")

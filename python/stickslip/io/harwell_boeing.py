@@ -89,8 +89,9 @@ class _Columns:
         Programs write to the end of every column, and in a format with exponents one in all
         numbers or in none. G writes blanks behind numbers without one.
         """
-        sizes = [self.width * min(self.repeat, count - n * self.repeat) for n in range(count)]
         lines = [line.rstrip() for line in block.lines]
+        numbers_on = (min(self.repeat, count - n * self.repeat) for n in range(len(lines)))
+        sizes = [self.width * on_line for on_line in numbers_on]
         short = [n for n, line in enumerate(lines) if len(line) < sizes[n]]
         if self.kind in "DE":
             numbers = [_NUMBER.findall(line) for line in lines]
@@ -99,7 +100,7 @@ class _Columns:
             bare = sum(map(len, powers)) - sum(map(sum, powers))
             known = bare == len(short) and sum(map(sum, powers)) > bare
         else:
-            full = sum(len(line) == size for line, size in zip(lines, sizes, strict=False))
+            full = sum(len(line) == size for line, size in zip(lines, sizes, strict=True))
             known = self.kind != "G" and full > len(short)
         for n in short if known else ():
             with at_line(block.first + n):
