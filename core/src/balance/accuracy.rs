@@ -23,6 +23,7 @@ use crate::structure::Quantity;
 use crate::timing::Profile;
 use crate::Error;
 use faer::c64;
+use std::ops::Range;
 
 /// The extended balance reaches past the highest stuck natural frequency by this factor, …
 pub(super) const PAST_LAST_MODE: f64 = 1.2;
@@ -87,25 +88,44 @@ pub(super) struct Extension {
     pub(super) products: Option<usize>,
     /// Whether its Jacobian is formed in any case.
     pub(super) formed: bool,
+    /// Whether receptances are of loads at the points that slip alone, if dense ones are taken.
+    pub(super) part: bool,
 }
 
 impl Extension {
     /// The extended balance at a frequency. It takes no more than the Newton steps of a solution from nothing
-    /// allow, nor than `credit`.
+    /// allow, nor than `credit`. Where few of many contacts slip receptances of these may take less than products.
     pub(super) fn new(effort: &Effort<'_>, kept: &Harmonics, omega: f64, credit: f64) -> Self {
+        let of = |own: &Effort<'_>| Self::of([effort, own], kept, omega, credit);
+        let found = of(effort);
+        if !effort.takes_products(found.highest) {
+            return found;
+        }
+        let formed = of(&effort.formed());
+        let [by_products, whole] = [&found, &formed].map(|one| one.account.of(true));
+        let reaches = formed.highest.cmp(&found.highest).then(by_products.total_cmp(&whole));
+        if reaches.is_gt() {
+            formed
+        } else {
+            found
+        }
+    }
+
+    /// The same by an effort of its own, beside that of the solution.
+    fn of([solution, effort]: [&Effort<'_>; 2], kept: &Harmonics, omega: f64, credit: f64) -> Self {
         let (highest, compliance) = (kept.highest(), effort.compliance());
         let reach = PAST_LAST_MODE * compliance.highest_frequency() / omega;
         let least = LEAST * common_divisor(&compliance.forced_harmonics());
         let beyond = highest + least.max((SHARE * highest as f64) as usize);
         let farthest = FARTHEST.0 * highest + FARTHEST.1;
         let wanted = (reach.min(farthest as f64) as usize).max(beyond);
+        let (orders, steps) = (solution.orders(highest), OF_SOLUTION * solution.step(highest));
         // The compliances of the kept harmonics are known; all are recovered, after each step.
-        let known = effort.orders(highest, [1.0, 0.0]);
-        let orders = effort.orders(highest, [1.0, 1.0]);
-        let steps = OF_SOLUTION * effort.step(highest);
-        let account = |order: usize| Account {
-            first: effort.orders(order, [1.0, 1.0]) - known + effort.step(order),
-            step: effort.orders(order, [0.0, 1.0]) + effort.step(order),
+        let later = effort.with_more_slip();
+        let account = |order: usize| {
+            let [displacements, compliances] = effort.extended(highest, order);
+            let first = compliances + displacements + effort.step(order);
+            Account { first, step: displacements + later.step(order) }
         };
         let budget =
             |order: usize| allowance(effort.allowed([highest, order]), steps, orders).min(credit);
@@ -121,8 +141,8 @@ impl Extension {
         let left = (budget(order) - account(order).of(true)).max(0.0);
         let of_step = effort.step(order) + 0.5 * left;
         let products = effort.products_within(of_step, [highest, order]);
-        let formed = effort.is_formed();
-        Self { highest: order, steps, unseen, account: account(order), products, formed }
+        let (formed, part) = (effort.is_formed(), effort.takes_part());
+        Self { highest: order, steps, unseen, account: account(order), products, formed, part }
     }
 
     /// Whether a neighbour may tell what its second step adds.
@@ -136,7 +156,7 @@ impl Extension {
     }
 
     /// The discarded harmonics that it adds, with those between them.
-    pub(super) fn discarded(&self, kept: &Harmonics) -> std::ops::Range<usize> {
+    pub(super) fn discarded(&self, kept: &Harmonics) -> Range<usize> {
         kept.highest() + 1..self.highest + 1
     }
 
@@ -216,6 +236,9 @@ pub(super) fn estimate(
     if let Some(most) = extension.products {
         extended.hold_to_products(most);
     }
+    if extension.part {
+        extended.answer(slipping_points(model, point));
+    }
     extended.watch(interrupted);
     if extended.set_omega_beside(point.omega, solved).is_err() {
         return Ok(Some(Estimate::of(f64::INFINITY, observe.len())));
@@ -286,6 +309,15 @@ fn of_extended(
     let all = found.errors.iter_mut().chain(&mut found.first).chain([&mut found.contacts]);
     all.for_each(|error| *error *= extension.unseen);
     Ok(Some(found))
+}
+
+/// Points of the contacts that slip in a solution.
+fn slipping_points(model: &Model, point: &Point) -> Vec<usize> {
+    let slip = |points: &Range<usize>| {
+        point.contacts[points.clone()].iter().any(|contact| contact.slip_fraction > 0.0)
+    };
+    let slipping = model.points().iter().filter(|points| slip(points));
+    slipping.flat_map(Range::clone).collect()
 }
 
 /// Which contacts slip where the tangents are known.

@@ -129,6 +129,14 @@ impl<'a> Condensed<'a> {
         self.linear.densify(self.table, self.slopes);
     }
 
+    /// Takes receptances of loads at some points alone, if dense ones are taken at all; those at others follow as
+    /// they come to slip.
+    pub(super) fn answer(&mut self, points: Vec<usize>) {
+        if matches!(self.linear, Linear::Dense(_)) {
+            self.linear = Linear::part(self.table, points);
+        }
+    }
+
     /// The equations of a curve, with the frequency unknown: by dense receptances unless the whole
     /// Jacobian is too large to be formed.
     pub(super) fn of_curve(
@@ -158,23 +166,28 @@ impl<'a> Condensed<'a> {
         mut store: impl FnMut(usize, &[c64], &[c64], &[c64]),
     ) -> Result<(), Error> {
         let (harmonics, omega) = (self.table.harmonics(), self.omega);
-        let (mut u, mut q) = (Vec::new(), Vec::new());
-        let mut observed = vec![c64::new(0.0, 0.0); observe.len()];
         let compliance = self.model.compliance();
-        let motion = (!observe.is_empty())
-            .then(|| self.linear.coordinates(compliance, harmonics, quantity, slip_load))
-            .flatten();
-        for (index, harmonic) in harmonics.orders().enumerate() {
-            gather(harmonics, harmonic, x, &mut u);
-            gather(harmonics, harmonic, slip_load, &mut q);
-            let (contact, slip_load) = (&u, &q);
-            let request = Request { harmonic, omega, quantity, contact, slip_load, observe };
-            let place = (index, harmonics.slot(harmonic));
-            let motion = motion.as_ref();
-            if !observe.is_empty() {
-                self.linear.displacement(compliance, place, motion, &request, &mut observed)?;
-            }
-            store(harmonic, &observed, &u, &q);
+        let amplitudes = |harmonic: usize| {
+            [x, slip_load].map(|series| {
+                let mut own = Vec::new();
+                gather(harmonics, harmonic, series, &mut own);
+                own
+            })
+        };
+        let loads: Vec<_> = harmonics.orders().map(amplitudes).collect();
+        let requests = harmonics.orders().zip(&loads).map(|(harmonic, [contact, slip_load])| {
+            Request { harmonic, omega, quantity, contact, slip_load, observe }
+        });
+        let requests: Vec<_> = requests.collect();
+        let mut observed = vec![c64::new(0.0, 0.0); requests.len() * observe.len()];
+        if !observe.is_empty() {
+            let motion = self.linear.coordinates(compliance, harmonics, quantity, slip_load);
+            let (motion, out) = (motion.as_ref(), &mut observed[..]);
+            self.linear.displacements(compliance, harmonics, motion, &requests, out)?;
+        }
+        for (index, request) in requests.iter().enumerate() {
+            let own = &observed[index * observe.len()..(index + 1) * observe.len()];
+            store(request.harmonic, own, request.contact, request.slip_load);
         }
         Ok(())
     }
@@ -337,64 +350,5 @@ impl<'a> Condensed<'a> {
         let law = &self.model.laws()[index];
         let sticks = self.loss == 0.0 && law.surely_sticks(motion);
         law.slip_load(motion, tangent && !sticks, load);
-    }
-
-    /// Adds to the slip load of a contact what the loss takes off the force, `q −= i η D u`.
-    pub(super) fn add_loss(
-        &self,
-        index: usize,
-        motion: Motion<'_>,
-        tangent: bool,
-        load: &mut SlipLoad,
-    ) {
-        let harmonics = self.table.harmonics();
-        let (slots, points) = (harmonics.slots(), &self.model.points()[index]);
-        let size = points.len() * slots;
-        let turned = harmonics.orders().filter(|&order| order > 0);
-        let pairs: Vec<usize> = turned.filter_map(|order| harmonics.slot(order)).collect();
-        for (i, row) in points.clone().enumerate() {
-            for (j, column) in points.clone().enumerate() {
-                let loss = self.loss * self.model.contact_stiffness()[(row, column)];
-                for &cosine in &pairs {
-                    for (to, from, share) in
-                        [(cosine, cosine + 1, -loss), (cosine + 1, cosine, loss)]
-                    {
-                        let (to, from) = (i * slots + to, j * slots + from);
-                        load.value[to] += share * motion.displacement[from];
-                        if tangent {
-                            load.tangent[to * size + from] += share;
-                        }
-                    }
-                }
-            }
-        }
-        load.active = true;
-    }
-
-    /// Adds to the slip load of a softened contact what its lost stiffness takes off the force,
-    /// `q = (1 − λ) D u + q_λ(u)`: the compliance goes on carrying the full stiffness.
-    pub(super) fn add_lost_stiffness(
-        &self,
-        index: usize,
-        share: f64,
-        motion: Motion<'_>,
-        tangent: bool,
-        load: &mut SlipLoad,
-    ) {
-        let slots = self.table.harmonics().slots();
-        let points = &self.model.points()[index];
-        let size = points.len() * slots;
-        for (i, row) in points.clone().enumerate() {
-            for (j, column) in points.clone().enumerate() {
-                let lost = share * self.model.contact_stiffness()[(row, column)];
-                for slot in 0..slots {
-                    load.value[i * slots + slot] += lost * motion.displacement[j * slots + slot];
-                    if tangent {
-                        load.tangent[(i * slots + slot) * size + j * slots + slot] += lost;
-                    }
-                }
-            }
-        }
-        load.active = true;
     }
 }

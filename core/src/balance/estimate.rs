@@ -101,7 +101,7 @@ impl ForcedBalance<'_> {
         // Where harmonics are chosen, every estimate decides by itself. Points of a curve whose frequency is
         // unknown take more than their steps.
         let fixed = self.control.is_fixed();
-        let counts = fixed && effort.keeps_account() && solved.is_none_or(|solved| !solved.slopes);
+        let counts = fixed && solved.is_none_or(|solved| !solved.slopes);
         let earned = counts.then(|| effort.earned(harmonics.highest()));
         let credit = self.neighbour.credit(point, earned);
         let whole = Extension::new(&effort, harmonics, point.omega, credit);
@@ -111,7 +111,8 @@ impl ForcedBalance<'_> {
             let (discarded, of) = (whole.discarded(harmonics), self.model.compliance());
             // As many points go on as solutions cost what an estimate does; all that may of a ring.
             let cost = whole.account.of(false) / effort.closely(harmonics.highest());
-            let in_a_row = if counts { IN_A_ROW } else { cost.ceil().max(1.0) as usize };
+            let ring = of.ring().is_some();
+            let in_a_row = if ring { IN_A_ROW } else { cost.ceil().max(1.0) as usize };
             let piece = &mut self.neighbour.piece;
             if let Some(errors) = piece.continued(point, &solution, of, discarded, in_a_row) {
                 point.error_estimate = errors;

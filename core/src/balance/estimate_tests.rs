@@ -3,14 +3,16 @@
 #![allow(clippy::unwrap_used)]
 
 use super::accuracy::Extension;
+use super::condensed::Condensed;
 use super::effort::Effort;
 use super::forced::ForcedBalance;
 use super::neighbour::Neighbour;
 use super::settings::{Evaluation, HarmonicChoice, Resolution, SampleChoice, Settings};
 use super::solution::{Point, PointStatus};
-use crate::contact::{BoucWen, Closure, ContactLaw, Coulomb, Jenkins};
-use crate::fourier::Harmonics;
+use crate::contact::{BoucWen, ContactLaw, Jenkins, Residual};
+use crate::fourier::{Harmonics, SampleTable};
 use crate::model::{Contact, Model};
+use crate::solve::{norm, System as _};
 use crate::structure::{HarmonicLoad, Structure};
 use faer::{c64, mat, Mat};
 
@@ -31,28 +33,11 @@ fn an_extended_balance_reaches_as_far_as_the_solution_allows() {
     let (model, kept) = (model(), Harmonics::new(1, true));
     let effort = Effort::new(&model, true, 1, 2);
     let extended = |credit: f64| Extension::new(&effort, &kept, 2.0, credit);
-    let [least, some, whole] = [0.0, effort.earned(1), f64::INFINITY].map(extended);
+    let earned = effort.earned(1);
+    let [least, some, whole] = [0.0, earned, f64::INFINITY].map(extended);
     assert!(least.highest == 3 && !least.has_two());
-    assert!(some.has_two() && some.account.of(true) <= effort.earned(1));
+    assert!(some.has_two() && some.account.of(true) <= earned);
     assert!(3 < some.highest && some.highest < whole.highest, "{}", some.highest);
-}
-
-/// Their laws and tangents take more than is reckoned.
-#[test]
-fn estimates_of_faces_are_allowed_less_than_those_of_sliders() {
-    let face = Coulomb::new(1, 0.4, 80.0, Some(60.0), Closure::Preload(1.0)).unwrap();
-    let structure = Structure::new(
-        mat![[2.0, 0.1], [0.1, 1.0]].as_ref(),
-        mat![[0.5, -0.1], [-0.1, 0.4]].as_ref(),
-        mat![[300.0, -100.0], [-100.0, 15000.0]].as_ref(),
-    )
-    .unwrap();
-    let contact = Contact { law: Box::new(face), rows: Mat::identity(2, 2) };
-    let faces = Model::new(structure, vec![contact], Vec::new()).unwrap();
-    let sliders = model();
-    let [of_faces, of_sliders] =
-        [&faces, &sliders].map(|model| Effort::new(model, false, 2, 2).allowed([1, 9]));
-    assert!(of_faces < 0.7 * of_sliders, "{of_faces} {of_sliders}");
 }
 
 #[test]
@@ -144,4 +129,48 @@ fn an_estimate_of_some_that_slip_among_many_forms_no_larger_jacobian_than_it_may
     let error = (few.displacement[1] - many.displacement[1]).norm();
     let estimate = few.error_estimate[0];
     assert!(error > 0.0 && error < 5.0 * estimate && estimate < 20.0 * error, "{error} {estimate}");
+}
+
+/// Receptances of loads at the points that slip, and at those that begin to slip, are all that the equations ask for.
+#[test]
+fn loads_at_points_that_slip_are_all_there_are() {
+    let model = chain();
+    let table = SampleTable::new(Harmonics::new(5, true));
+    let mut equations = [false, true].map(|part| {
+        let mut equations = Condensed::new(&model, &table, Residual::Centred, false);
+        equations.densify();
+        if part {
+            equations.answer(vec![3]);
+        }
+        equations.set_omega(5.45).unwrap();
+        equations
+    });
+    let slots = table.harmonics().slots();
+    for size in [1e-6, 1e-5, 1e-4] {
+        let x: Vec<f64> = (0..25 * slots).map(|i| size * (1.7 * i as f64).sin()).collect();
+        let [whole, part] = equations.each_mut().map(|equations| {
+            let (mut residual, mut step) = (vec![0.0; x.len()], vec![0.0; x.len()]);
+            equations.residual(&x, &mut residual);
+            assert!(equations.solve(&residual, &mut step));
+            (residual, step, equations.active_points())
+        });
+        assert_eq!(whole.2, part.2);
+        assert!(!whole.2.is_empty() && whole.2.len() < 25, "{size}: {:?}", whole.2);
+        for (whole, part) in [(whole.0, part.0), (whole.1, part.1)] {
+            let left: Vec<f64> = whole.iter().zip(&part).map(|(a, b)| a - b).collect();
+            assert!(norm(&left) < 1e-10 * norm(&whole), "{size}: {}", norm(&left) / norm(&whole));
+        }
+    }
+}
+
+/// Where few of many contacts slip, receptances of theirs reach as far as products with all modes, and take less.
+#[test]
+fn few_that_slip_among_many_form_their_own_jacobian() {
+    let (model, kept) = (chain(), Harmonics::new(15, true));
+    let [few, all] = [1, 25].map(|slipping| {
+        let effort = Effort::new(&model, true, slipping, 33);
+        Extension::new(&effort, &kept, 5.45, f64::INFINITY)
+    });
+    assert!(few.formed && few.part && few.has_two());
+    assert!(!all.formed);
 }

@@ -7,6 +7,7 @@ use super::krylov_newton::{KrylovNewton, Products, MOST_PRODUCTS};
 use super::linear::{Factor, Linear};
 use super::ring::{RingNewton, RingSeries};
 use super::slip_jacobian::{Answers, Border, Loads, SlipJacobian};
+use crate::contact::SlipLoad;
 use crate::model::Model;
 use crate::solve::{norm, Parametrised, System};
 use crate::structure::{Compliance as _, ContactCoordinates, ModalOrders};
@@ -57,10 +58,25 @@ impl Condensed<'_> {
             self.values = loads;
         }
         self.moved_on = !tangent;
+        self.know_answers();
         out.fill(0.0);
         self.add_response(&self.slip_load(), out);
         for ((r, x), stuck) in out.iter_mut().zip(x).zip(&self.stuck) {
             *r = x - self.load_scale * stuck - *r;
+        }
+    }
+
+    /// Sees to it that the answers to all slip loads are known, if those at some points are.
+    fn know_answers(&mut self) {
+        let loads = if self.moved_on { &self.values } else { &self.loads };
+        let carries = |load: &&SlipLoad| load.active || load.value.iter().any(|q| *q != 0.0);
+        let loaded = loads.iter().zip(self.model.points());
+        let loaded =
+            loaded.filter(|(load, _)| carries(load)).flat_map(|(_, points)| points.clone());
+        let more = self.linear.unknown(loaded);
+        if !more.is_empty() {
+            let (compliance, harmonics) = (self.model.compliance(), self.table.harmonics());
+            self.linear.include(more, compliance, harmonics, self.omega);
         }
     }
 
@@ -103,6 +119,11 @@ impl Condensed<'_> {
                 let answers = Answers::new(receptances, harmonics);
                 Some(Factor::Dense(SlipJacobian::new(self.tangents(), &answers, None)))
             }
+            (Linear::Part { points, receptances }, _) => {
+                let contacts = compliance.contacts();
+                let answers = Answers::of_part(receptances, harmonics, contacts, points);
+                Some(Factor::Dense(SlipJacobian::new(self.tangents(), &answers, None)))
+            }
             _ => None,
         };
     }
@@ -138,7 +159,7 @@ impl Condensed<'_> {
                 self.profile.products += count;
                 (step, 0.0)
             }
-            Linear::Ring { .. } => return None,
+            Linear::Ring { .. } | Linear::Part { .. } => return None,
         };
         self.profile.linear_solve += start.elapsed();
         step.iter().all(|s| s.is_finite()).then_some((step, sign))

@@ -21,6 +21,13 @@ const EXACT: f64 = 1e-14;
 pub(super) enum Linear {
     /// Dense receptances.
     Dense(Vec<Receptance>),
+    /// The same for loads at some points alone: no others slip.
+    Part {
+        /// These points.
+        points: Vec<usize>,
+        /// Contacts × points.
+        receptances: Vec<Receptance>,
+    },
     /// Modes of the stuck structure: receptances are never formed. Empty until a frequency is set.
     Modal(ModalOrders),
     /// Sectors coupled to their neighbours.
@@ -59,6 +66,38 @@ impl Linear {
         Self::Dense(vec![blank; table.harmonics().orders().count()])
     }
 
+    /// Dense receptances for loads at some points.
+    pub(super) fn part(table: &SampleTable, points: Vec<usize>) -> Self {
+        let receptances = vec![Receptance::default(); table.harmonics().orders().count()];
+        Self::Part { points, receptances }
+    }
+
+    /// Points that loads are on, but not those whose answers are known.
+    pub(super) fn unknown(&self, loaded: impl Iterator<Item = usize>) -> Vec<usize> {
+        let Self::Part { points, .. } = self else { return Vec::new() };
+        loaded.filter(|point| !points.contains(point)).collect()
+    }
+
+    /// Adds loads at more points to those whose answers are known.
+    pub(super) fn include(
+        &mut self,
+        more: Vec<usize>,
+        compliance: &dyn Compliance,
+        harmonics: &Harmonics,
+        omega: f64,
+    ) {
+        let Self::Part { points, receptances } = self else { return };
+        let mut own = Receptance::default();
+        for (receptance, order) in receptances.iter_mut().zip(harmonics.orders()) {
+            // What has an answer to loads at some points has one to those at others.
+            if compliance.receptance_of(&more, order, omega, &mut own).is_err() {
+                own.contact = vec![c64::new(f64::NAN, 0.0); more.len() * compliance.contacts()];
+            }
+            receptance.contact.append(&mut own.contact);
+        }
+        points.extend(more);
+    }
+
     /// Takes dense receptances in any case.
     pub(super) fn densify(&mut self, table: &SampleTable, slopes: bool) {
         if !matches!(self, Self::Dense(_)) {
@@ -88,6 +127,19 @@ impl Linear {
                     } else {
                         compliance
                             .receptance(order, omega, receptance)
+                            .map_err(|error| (order, error))?;
+                    }
+                    scatter(harmonics, order, &receptance.stuck, stuck);
+                }
+            }
+            Self::Part { points, receptances } => {
+                for (receptance, order) in receptances.iter_mut().zip(harmonics.orders()) {
+                    if let Some((Self::Dense(known), index)) = position(order) {
+                        receptance.clone_from(&known[index]);
+                        receptance.keep(points);
+                    } else {
+                        compliance
+                            .receptance_of(points, order, omega, receptance)
                             .map_err(|error| (order, error))?;
                     }
                     scatter(harmonics, order, &receptance.stuck, stuck);
@@ -155,29 +207,35 @@ impl Linear {
         Some(motion)
     }
 
-    /// Displacements at the harmonic of position `index`; `motion` holds the modal coordinates, if
+    /// Displacements at all kept harmonics, one after the other; `motion` holds the modal coordinates, if
     /// there are some.
-    pub(super) fn displacement(
+    pub(super) fn displacements(
         &self,
         compliance: &dyn Compliance,
-        (index, slot): (usize, Option<usize>),
+        harmonics: &Harmonics,
         motion: Option<&Mat<f64>>,
-        request: &Request<'_>,
+        requests: &[Request<'_>],
         out: &mut [c64],
     ) -> Result<(), Error> {
-        if let (Some(motion), Some(modes), Some(slot)) = (motion, compliance.contact_modes(), slot)
-        {
-            modes.observe(request.harmonic, slot, motion, request.observe, out);
-            return Ok(());
-        }
-        match (self, compliance.ring()) {
-            (Self::Ring { orders, .. }, Some(ring)) => {
-                let answers = &orders[index];
-                let loaded = request.quantity != Quantity::OfSlip;
-                let motion = answers.motion(loaded, request.slip_load);
-                ring.displacement_of(answers.order(), &motion, request, out)
+        let observed = requests.first().map_or(1, |request| request.observe.len().max(1));
+        let mut parts = requests.iter().zip(out.chunks_exact_mut(observed));
+        match (self, compliance.ring(), motion.zip(compliance.contact_modes())) {
+            (Self::Ring { orders, .. }, Some(ring), _) => {
+                parts.zip(orders).try_for_each(|((request, out), answers)| {
+                    let loaded = request.quantity != Quantity::OfSlip;
+                    let motion = answers.motion(loaded, request.slip_load);
+                    ring.displacement_of(answers.order(), &motion, request, out)
+                })
             }
-            _ => compliance.displacement(request, out),
+            (_, _, Some((motion, modes))) => {
+                parts.try_for_each(|(Request { harmonic, observe, .. }, out)| {
+                    if let Some(slot) = harmonics.slot(*harmonic) {
+                        modes.observe(*harmonic, slot, motion, observe, out);
+                    }
+                    Ok(())
+                })
+            }
+            _ => compliance.displacements(requests, out),
         }
     }
 
@@ -191,7 +249,10 @@ impl Linear {
     ) {
         match self {
             Self::Dense(receptances) => {
-                add_product(receptances, harmonics, slip_load, out, |r| &r.contact);
+                add_product(receptances, None, harmonics, slip_load, out, |r| &r.contact);
+            }
+            Self::Part { points, receptances } => {
+                add_product(receptances, Some(points), harmonics, slip_load, out, |r| &r.contact);
             }
             Self::Modal(orders) => {
                 let Some(modes) = compliance.contact_modes() else { return };
@@ -208,7 +269,7 @@ impl Linear {
         }
     }
 
-    /// `out += dU^stuck/dω + dG/dω q`.
+    /// `out += dU^stuck/dω + dG/dω q`; of parts nobody asks for it.
     pub(super) fn add_rate(
         &self,
         compliance: &dyn Compliance,
@@ -223,10 +284,11 @@ impl Linear {
                         add(harmonics, order, stuck, out);
                     }
                 }
-                add_product(receptances, harmonics, slip_load, out, |receptance| {
+                add_product(receptances, None, harmonics, slip_load, out, |receptance| {
                     receptance.slope.as_ref().map_or(&[], |(contact, _)| contact)
                 });
             }
+            Self::Part { .. } => {}
             Self::Modal(orders) => {
                 let Some(modes) = compliance.contact_modes() else { return };
                 let mut motion = excite(modes, harmonics, slip_load);
@@ -250,7 +312,7 @@ impl Linear {
     /// `out += dG/dr q` of the ratio r of negative damping.
     pub(super) fn add_ratio_rate(&self, harmonics: &Harmonics, slip_load: &[f64], out: &mut [f64]) {
         if let Self::Dense(receptances) = self {
-            add_product(receptances, harmonics, slip_load, out, |r| &r.by_ratio);
+            add_product(receptances, None, harmonics, slip_load, out, |r| &r.by_ratio);
         }
     }
 }
@@ -294,6 +356,7 @@ fn add(harmonics: &Harmonics, order: usize, amplitudes: &[c64], out: &mut [f64])
 
 fn add_product(
     receptances: &[Receptance],
+    points: Option<&[usize]>,
     harmonics: &Harmonics,
     slip_load: &[f64],
     out: &mut [f64],
@@ -307,8 +370,8 @@ fn add_product(
         if g.is_empty() {
             continue;
         }
-        for column in 0..contacts {
-            let at = column * slots + slot;
+        for column in 0..points.map_or(contacts, <[_]>::len) {
+            let at = points.map_or(column, |points| points[column]) * slots + slot;
             let q = if order == 0 {
                 c64::new(slip_load[at], 0.0)
             } else {

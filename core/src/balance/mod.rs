@@ -28,6 +28,7 @@ mod linearised;
 mod modal_work;
 mod neighbour;
 mod open_mean;
+mod path;
 mod price;
 mod ring;
 mod sweep;

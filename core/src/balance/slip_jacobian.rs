@@ -252,6 +252,25 @@ impl Answers {
         Self { places, known, has_mean: harmonics.has_mean(), orders, values }
     }
 
+    /// Of loads at some points.
+    pub(super) fn of_part(
+        receptances: &[Receptance],
+        harmonics: &Harmonics,
+        contacts: usize,
+        points: &[usize],
+    ) -> Self {
+        let mut values = Vec::with_capacity(points.len().pow(2) * receptances.len());
+        for source in 0..points.len() {
+            for point in points {
+                let answers = receptances.iter().map(|r| r.contact[source * contacts + point]);
+                values.extend(answers.map(|g| [g.re, g.im]));
+            }
+        }
+        let (known, orders) = (points.len(), receptances.len());
+        let places = places(contacts, points);
+        Self { places, known, has_mean: harmonics.has_mean(), orders, values }
+    }
+
     /// Of some points of a ring, which were asked for.
     pub(super) fn of_ring(
         orders: &[RingAnswers],
@@ -259,8 +278,6 @@ impl Answers {
         contacts: usize,
         points: &[usize],
     ) -> Self {
-        let mut places = vec![usize::MAX; contacts];
-        points.iter().enumerate().for_each(|(place, point)| places[*point] = place);
         let mut values = Vec::with_capacity(points.len().pow(2) * orders.len());
         for source in points {
             for point in points {
@@ -269,6 +286,7 @@ impl Answers {
             }
         }
         let (known, orders) = (points.len(), orders.len());
+        let places = places(contacts, points);
         Self { places, known, has_mean: harmonics.has_mean(), orders, values }
     }
 
@@ -288,4 +306,11 @@ impl Answers {
             out[1] += factor * (t[0] * im + t[1] * re);
         }
     }
+}
+
+/// Where some points of all are in their list.
+fn places(contacts: usize, points: &[usize]) -> Vec<usize> {
+    let mut places = vec![usize::MAX; contacts];
+    points.iter().enumerate().for_each(|(place, point)| places[*point] = place);
+    places
 }

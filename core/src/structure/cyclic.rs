@@ -320,10 +320,10 @@ impl Compliance for CyclicCompliance {
         self.wave(harmonic).is_ok_and(|wave| wave.is_clear(harmonic, range, asked))
     }
 
-    fn effort(&self, observed: usize) -> [f64; 2] {
+    fn effort(&self, points: usize, observed: usize) -> [f64; 2] {
         // All nodal diameters are much alike; this one has been decomposed.
         let harmonic = self.outline.forced.first().copied().unwrap_or(1);
-        self.wave(harmonic).map_or([0.0; 2], |wave| wave.effort(observed))
+        self.wave(harmonic).map_or([0.0; 2], |wave| wave.effort(points, observed))
     }
 
     fn is_direct(&self) -> bool {
@@ -333,6 +333,16 @@ impl Compliance for CyclicCompliance {
 
     fn receptance(&self, harmonic: usize, omega: f64, out: &mut Receptance) -> Result<(), Error> {
         self.wave(harmonic)?.receptance(harmonic, omega, out)
+    }
+
+    fn receptance_of(
+        &self,
+        points: &[usize],
+        harmonic: usize,
+        omega: f64,
+        out: &mut Receptance,
+    ) -> Result<(), Error> {
+        self.wave(harmonic)?.receptance_of(points, harmonic, omega, out)
     }
 
     fn displacement(&self, request: &Request<'_>, out: &mut [c64]) -> Result<(), Error> {

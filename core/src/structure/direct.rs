@@ -207,7 +207,7 @@ impl Compliance for DirectCompliance {
         Ok(())
     }
 
-    fn effort(&self, _observed: usize) -> [f64; 2] {
+    fn effort(&self, _points: usize, _observed: usize) -> [f64; 2] {
         // A factorisation each.
         [1.2 * (self.mass.nrows() as f64).powi(3); 2]
     }

@@ -103,7 +103,7 @@ impl Compliance for InterfaceCompliance {
 
     /// Those without contacts take a decomposition.
     fn finds_modes(&self, asked: usize) -> bool {
-        pays_for_modes(self.dofs(), asked, self.effort(0)[0])
+        pays_for_modes(self.dofs(), asked, self.effort(self.contacts(), 0)[0])
     }
 
     fn lowest_frequencies(&self) -> Option<[f64; 2]> {
@@ -119,11 +119,23 @@ impl Compliance for InterfaceCompliance {
     }
 
     fn receptance(&self, harmonic: usize, omega: f64, out: &mut Receptance) -> Result<(), Error> {
+        let all: Vec<usize> = (0..self.contacts()).collect();
+        self.receptance_of(&all, harmonic, omega, out)
+    }
+
+    fn receptance_of(
+        &self,
+        points: &[usize],
+        harmonic: usize,
+        omega: f64,
+        out: &mut Receptance,
+    ) -> Result<(), Error> {
         out.reset(self.contacts());
+        out.contact.truncate(self.contacts() * points.len());
         self.modes.check(harmonic, omega)?;
         let rows = self.modes.shapes();
-        let complex = |i: usize, j: usize| c64::new(rows[(i, j)], 0.0);
-        let forces = Mat::from_fn(rows.nrows(), rows.ncols(), complex);
+        let complex = |i: usize, j: usize| c64::new(rows[(i, points[j])], 0.0);
+        let forces = Mat::from_fn(rows.nrows(), points.len(), complex);
         let load = self.modes.load(harmonic);
         let load =
             Mat::from_fn(rows.nrows(), 1, |i, _| load.map_or(c64::new(0.0, 0.0), |load| load[i]));
@@ -173,11 +185,11 @@ impl Compliance for InterfaceCompliance {
         Ok(())
     }
 
-    fn effort(&self, observed: usize) -> [f64; 2] {
+    fn effort(&self, points: usize, observed: usize) -> [f64; 2] {
         let (modes, contacts) = (self.modes.modes() as f64, self.contacts() as f64);
         let whole = if self.modes.is_coupled() { modes.powi(3) } else { 0.0 };
         let displacement = modes * (20.0 + 1.5 * (contacts + observed as f64));
-        [modes * (20.0 + 0.5 * contacts * contacts) + whole, displacement]
+        [modes * (20.0 + 0.5 * contacts * points as f64) + whole, displacement]
     }
 }
 

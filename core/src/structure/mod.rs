@@ -84,6 +84,13 @@ impl Receptance {
         }
         self.by_ratio.clear();
     }
+
+    /// Leaves what loads at some of the points cause, in their order; derivatives are none of it.
+    pub(crate) fn keep(&mut self, points: &[usize]) {
+        let contacts = self.stuck.len();
+        let columns = points.iter().map(|point| &self.contact[point * contacts..][..contacts]);
+        self.contact = columns.flatten().copied().collect();
+    }
 }
 
 /// What is to be displaced, and by what, at a harmonic of a motion.
@@ -157,15 +164,41 @@ pub trait Compliance: Send + Sync {
     /// The static stiffness is singular (harmonic 0), or nothing damps the resonance met.
     fn receptance(&self, harmonic: usize, omega: f64, out: &mut Receptance) -> Result<(), Error>;
 
+    /// The same for unit slip loads at some points alone, contacts × points, without derivatives.
+    ///
+    /// # Errors
+    /// As [`Compliance::receptance`].
+    fn receptance_of(
+        &self,
+        points: &[usize],
+        harmonic: usize,
+        omega: f64,
+        out: &mut Receptance,
+    ) -> Result<(), Error> {
+        self.receptance(harmonic, omega, out)?;
+        out.keep(points);
+        Ok(())
+    }
+
     /// Displacement amplitudes that are asked for.
     ///
     /// # Errors
     /// As [`Compliance::receptance`].
     fn displacement(&self, request: &Request<'_>, out: &mut [c64]) -> Result<(), Error>;
 
-    /// About the times that the receptance of one harmonic and the displacements of `observed` DOFs
-    /// take on a common processor \[ns\].
-    fn effort(&self, _observed: usize) -> [f64; 2] {
+    /// The same of several harmonics of a motion with the same observed DOFs, one after the other.
+    ///
+    /// # Errors
+    /// As [`Compliance::receptance`].
+    fn displacements(&self, requests: &[Request<'_>], out: &mut [c64]) -> Result<(), Error> {
+        let observed = requests.first().map_or(1, |request| request.observe.len().max(1));
+        let mut parts = requests.iter().zip(out.chunks_exact_mut(observed));
+        parts.try_for_each(|(request, out)| self.displacement(request, out))
+    }
+
+    /// About the times that the receptance of one harmonic for loads at so many `points` and the displacements of
+    /// `observed` DOFs take on a common processor \[ns\].
+    fn effort(&self, _points: usize, _observed: usize) -> [f64; 2] {
         [0.0; 2]
     }
 

@@ -4,12 +4,12 @@ use super::contact_coordinates::ContactCoordinates;
 use super::contact_modes::ContactModes;
 use super::modal::{ModalBase, ModalCompliance};
 use super::modes::resonates;
-use super::restraint::restrain;
+use super::restraint::{restrain, FEW};
 use super::spectrum::Spectrum;
 use super::{within, Compliance, Outline, Quantity, Receptance, Request};
 use crate::Error;
 use faer::linalg::matmul::matmul;
-use faer::{c64, Accum, Mat, MatMut, Par};
+use faer::{c64, Accum, ColMut, Mat, MatMut, Par};
 use std::ops::Range;
 
 /// Observed degrees of freedom that a product of matrices displaces.
@@ -64,8 +64,14 @@ impl ModalCompliance {
         Ok(())
     }
 
-    /// Sums the modes into `g` (and its derivative) for all contact pairs and the load.
-    fn sum_modes(&self, harmonic: usize, omega: f64, out: &mut Receptance) {
+    /// Sums the modes into `g` (and its derivative) for loads at all points, or at some alone, and for the
+    /// external load.
+    fn sum_modes(
+        &self,
+        points: Option<&[usize]>,
+        (harmonic, omega): (usize, f64),
+        out: &mut Receptance,
+    ) {
         let contacts = self.contacts();
         let order = harmonic as f64;
         let load = self.load(harmonic);
@@ -74,7 +80,7 @@ impl ModalCompliance {
         }
         let by_products = contacts >= ContactModes::FEWEST && self.negative.is_empty();
         if by_products {
-            self.multiply_modes(order, omega, out);
+            self.multiply_modes(points, (order, omega), out);
         }
         for j in 0..self.right.ncols() {
             let (weight, slope) = self.weight(j, order * omega);
@@ -82,8 +88,8 @@ impl ModalCompliance {
             let [left, right] =
                 [&self.contact_left, &self.contact_right].map(|c| c.col_as_slice(j));
             let add = |to: &mut [c64], factor: c64| {
-                for (column, left) in to.chunks_exact_mut(contacts.max(1)).zip(left) {
-                    let value = factor * left;
+                for (at, column) in to.chunks_exact_mut(contacts.max(1)).enumerate() {
+                    let value = factor * left[points.map_or(at, |points| points[at])];
                     column.iter_mut().zip(right).for_each(|(to, right)| *to += right * value);
                 }
             };
@@ -108,9 +114,40 @@ impl ModalCompliance {
         }
     }
 
+    /// Coordinates of the modes at a harmonic above 0.
+    fn write_coordinates(&self, request: &Request<'_>, out: ColMut<'_, c64>) {
+        let Request { harmonic, omega, quantity, contact, slip_load, .. } = *request;
+        let (loaded, sloped) = (quantity != Quantity::OfSlip, quantity == Quantity::Slope);
+        // The free structure carries the whole contact force, the stuck one the slip load alone.
+        let mut forces = slip_load.to_vec();
+        if let Some(stiffness) = &self.restraint {
+            for (i, force) in forces.iter_mut().enumerate() {
+                *force -= (0..contact.len()).map(|j| stiffness[(i, j)] * contact[j]).sum::<c64>();
+            }
+        }
+        let acting = forces.iter().enumerate().filter(|(_, force)| **force != c64::new(0.0, 0.0));
+        let acting: Vec<_> = acting.collect();
+        let (order, load) = (harmonic as f64, self.load(harmonic).filter(|_| loaded));
+        for (j, coordinate) in out.iter_mut().enumerate() {
+            let left = self.contact_left.col_as_slice(j);
+            let mut excitation = load.map_or(c64::new(0.0, 0.0), |load| load[j]);
+            acting.iter().for_each(|(i, force)| excitation += left[*i] * *force);
+            let (weight, slope) = self.weight(j, order * omega);
+            let weight = if sloped { order * slope } else { weight };
+            *coordinate = weight * excitation;
+        }
+    }
+
     /// The sum for the pairs of many contacts, as a product of matrices.
-    fn multiply_modes(&self, order: f64, omega: f64, out: &mut Receptance) {
+    fn multiply_modes(
+        &self,
+        points: Option<&[usize]>,
+        (order, omega): (f64, f64),
+        out: &mut Receptance,
+    ) {
         let (contacts, modes) = (self.contacts(), self.right.ncols());
+        let columns = points.map_or(contacts, <[_]>::len);
+        let point = |at: usize| points.map_or(at, |points| points[at]);
         let weights: Vec<[c64; 2]> = (0..modes)
             .map(|j| {
                 let (weight, slope) = self.weight(j, order * omega);
@@ -119,9 +156,10 @@ impl ModalCompliance {
             .collect();
         let slope = out.slope.as_mut().map(|(contact, _)| contact);
         for (which, sum) in [&mut out.contact].into_iter().chain(slope).enumerate() {
-            let left =
-                Mat::from_fn(modes, contacts, |j, i| self.contact_left[(i, j)] * weights[j][which]);
-            let sum = MatMut::from_column_major_slice_mut(sum, contacts, contacts);
+            let left = Mat::from_fn(modes, columns, |j, i| {
+                self.contact_left[(point(i), j)] * weights[j][which]
+            });
+            let sum = MatMut::from_column_major_slice_mut(sum, contacts, columns);
             let (right, one) = (self.contact_right.as_ref(), c64::new(1.0, 0.0));
             matmul(sum, Accum::Replace, right, left.as_ref(), one, Par::Seq);
         }
@@ -152,54 +190,73 @@ impl Compliance for ModalCompliance {
             return Ok(());
         }
         self.check_resonance(harmonic, omega)?;
-        self.sum_modes(harmonic, omega, out);
+        self.sum_modes(None, (harmonic, omega), out);
         if let Some(stiffness) = &self.restraint {
-            restrain(stiffness.as_ref(), out);
+            restrain(stiffness.as_ref(), None, out);
+        }
+        Ok(())
+    }
+
+    fn receptance_of(
+        &self,
+        points: &[usize],
+        harmonic: usize,
+        omega: f64,
+        out: &mut Receptance,
+    ) -> Result<(), Error> {
+        if harmonic == 0 {
+            self.receptance(harmonic, omega, out)?;
+            out.keep(points);
+            return Ok(());
+        }
+        self.check_resonance(harmonic, omega)?;
+        let contacts = self.contacts();
+        out.reset(contacts);
+        if let Some(stiffness) = &self.restraint {
+            self.sum_modes(None, (harmonic, omega), out);
+            restrain(stiffness.as_ref(), Some(points), out);
+        } else {
+            out.contact.truncate(contacts * points.len());
+            self.sum_modes(Some(points), (harmonic, omega), out);
         }
         Ok(())
     }
 
     fn displacement(&self, request: &Request<'_>, out: &mut [c64]) -> Result<(), Error> {
-        let Request { harmonic, omega, quantity, contact, slip_load, observe } = *request;
+        self.displacements(std::slice::from_ref(request), out)
+    }
+
+    fn displacements(&self, requests: &[Request<'_>], mut out: &mut [c64]) -> Result<(), Error> {
         out.fill(c64::new(0.0, 0.0));
-        let (loaded, sloped) = (quantity != Quantity::OfSlip, quantity == Quantity::Slope);
-        if harmonic == 0 {
+        let [first, ..] = requests else { return Ok(()) };
+        let (mut requests, observe) = (requests, first.observe);
+        if first.harmonic == 0 {
+            let (rest, loaded) = out.split_at_mut(observe.len());
             // Static displacements do not know of a frequency.
-            if !sloped {
+            if first.quantity != Quantity::Slope {
                 let flexibility = self.flexibility.as_ref().ok_or_else(|| self.singular())?;
-                flexibility.displacement(loaded, slip_load, observe, out);
+                let loads = first.quantity == Quantity::Whole;
+                flexibility.displacement(loads, first.slip_load, observe, rest);
             }
-            return Ok(());
+            (requests, out) = (&requests[1..], loaded);
         }
-        // The free structure carries the whole contact force, the stuck one the slip load alone.
-        let mut forces = slip_load.to_vec();
-        if let Some(stiffness) = &self.restraint {
-            for (i, force) in forces.iter_mut().enumerate() {
-                *force -= (0..contact.len()).map(|j| stiffness[(i, j)] * contact[j]).sum::<c64>();
-            }
-        }
-        let (order, load) = (harmonic as f64, self.load(harmonic).filter(|_| loaded));
-        let coordinate = |j: usize| {
-            let mut excitation = load.map_or(c64::new(0.0, 0.0), |load| load[j]);
-            for (left, force) in self.contact_left.col_as_slice(j).iter().zip(&forces) {
-                excitation += left * force;
-            }
-            let (weight, slope) = self.weight(j, order * omega);
-            let weight = if sloped { order * slope } else { weight };
-            weight * excitation
-        };
         let modes = self.right.ncols();
+        let mut coordinates = Mat::zeros(modes, requests.len());
+        for (column, request) in coordinates.col_iter_mut().zip(requests) {
+            self.write_coordinates(request, column);
+        }
         if let Some(rows) = consecutive(observe).filter(|rows| rows.len() >= MANY) {
-            let coordinates = Mat::from_fn(modes, 1, |j, _| coordinate(j));
             let (shapes, one) = (self.right.get(rows, ..), c64::new(1.0, 0.0));
-            let out = MatMut::from_column_major_slice_mut(out, shapes.nrows(), 1);
+            let out = MatMut::from_column_major_slice_mut(out, shapes.nrows(), requests.len());
             matmul(out, Accum::Replace, shapes, coordinates.as_ref(), one, Par::Seq);
             return Ok(());
         }
-        for j in 0..modes {
-            let (shape, coordinate) = (self.right.col_as_slice(j), coordinate(j));
-            for (x, &dof) in out.iter_mut().zip(observe) {
-                *x += shape[dof] * coordinate;
+        for (own, out) in coordinates.col_iter().zip(out.chunks_exact_mut(observe.len().max(1))) {
+            for (j, coordinate) in own.iter().enumerate() {
+                let shape = self.right.col_as_slice(j);
+                for (x, &dof) in out.iter_mut().zip(observe) {
+                    *x += shape[dof] * coordinate;
+                }
             }
         }
         Ok(())
@@ -220,12 +277,22 @@ impl Compliance for ModalCompliance {
         ![stuck, free].iter().any(|list| list[within(list, range)].iter().copied().any(narrow))
     }
 
-    fn effort(&self, observed: usize) -> [f64; 2] {
+    fn effort(&self, points: usize, observed: usize) -> [f64; 2] {
         let (modes, contacts) = (self.right.ncols() as f64, self.contacts() as f64);
-        // A factorisation and as many solutions as there are contacts.
-        let restraint = if self.restraint.is_some() { contacts.powi(3) } else { 0.0 };
-        let each = if observed >= MANY { 0.5 } else { 1.5 };
-        let displacement = modes * (20.0 + 1.5 * contacts + each * observed as f64);
-        [modes * (20.0 + 1.5 * contacts * contacts) + restraint, displacement]
+        let points = points as f64;
+        // Measured: products of matrices, elimination by a library, and by hand.
+        let [own, pair, factor, answer] = match self.contacts() {
+            ContactModes::FEWEST.. => [100.0, 0.35, 0.5, 0.6],
+            contacts if contacts > FEW => [40.0, 1.5, 1.5, 2.5],
+            _ => [40.0, 1.5, 0.3, 2.5],
+        };
+        let restrained = self.restraint.is_some();
+        let (loaded, acting) = if restrained { (contacts, contacts) } else { (points, points) };
+        // A factorisation and as many solutions as there are points.
+        let restraint = contacts.powi(2) * (factor * contacts + answer * points);
+        let restraint = if restrained { restraint } else { 0.0 };
+        let each = if observed >= MANY { 0.2 } else { 1.2 };
+        let displacement = modes * (25.0 + 1.5 * acting + each * observed as f64);
+        [modes * (own + pair * contacts * loaded) + restraint, displacement]
     }
 }

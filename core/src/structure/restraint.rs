@@ -7,15 +7,15 @@ use faer::{c64, Mat, MatRef};
 
 /// Contacts up to which elimination by hand is faster than a library's, and a size at which its tables take less time
 /// to clear.
-const FEW: usize = 12;
+pub(super) const FEW: usize = 12;
 const FEWEST: usize = 4;
 
-/// Turns the receptance of the free structure into that of the stuck one:
-/// `G_s = (I + G D)⁻¹ G`.
-pub(super) fn restrain(stiffness: MatRef<'_, f64>, out: &mut Receptance) {
+/// Turns the receptance of the free structure into that of the stuck one, `G_s = (I + G D)⁻¹ G`, for loads at all
+/// points or, without derivatives, at some alone.
+pub(super) fn restrain(stiffness: MatRef<'_, f64>, points: Option<&[usize]>, out: &mut Receptance) {
     let contacts = stiffness.nrows();
     let sloped = out.slope.is_some() || !out.by_ratio.is_empty();
-    if contacts == 1 {
+    if contacts == 1 && points.is_none() {
         let d = stiffness[(0, 0)];
         let factor = (1.0 + out.contact[0] * d).inv();
         out.contact[0] *= factor;
@@ -31,10 +31,10 @@ pub(super) fn restrain(stiffness: MatRef<'_, f64>, out: &mut Receptance) {
         return;
     }
     if contacts <= FEWEST && !sloped {
-        return restrain_few::<FEWEST>(stiffness, out);
+        return restrain_few::<FEWEST>(stiffness, points, out);
     }
     if contacts <= FEW && !sloped {
-        return restrain_few::<FEW>(stiffness, out);
+        return restrain_few::<FEW>(stiffness, points, out);
     }
     let stiffness = complex(stiffness);
     let column_major = |values: &[c64]| {
@@ -43,6 +43,13 @@ pub(super) fn restrain(stiffness: MatRef<'_, f64>, out: &mut Receptance) {
     let free = column_major(&out.contact);
     let coupling = Mat::<c64>::identity(contacts, contacts) + &free * &stiffness;
     let lu = coupling.partial_piv_lu();
+    if let Some(points) = points {
+        out.keep(points);
+        for loaded in [&mut out.contact, &mut out.stuck] {
+            store(lu.solve(column_major(loaded)).as_ref(), loaded);
+        }
+        return;
+    }
     let contact = lu.solve(&free);
     let stuck = lu.solve(column_major(&out.stuck));
     store(contact.as_ref(), &mut out.contact);
@@ -61,7 +68,11 @@ pub(super) fn restrain(stiffness: MatRef<'_, f64>, out: &mut Receptance) {
 }
 
 /// The same of up to `MOST` contacts, without derivatives, by elimination with row pivoting.
-fn restrain_few<const MOST: usize>(stiffness: MatRef<'_, f64>, out: &mut Receptance) {
+fn restrain_few<const MOST: usize>(
+    stiffness: MatRef<'_, f64>,
+    points: Option<&[usize]>,
+    out: &mut Receptance,
+) {
     let n = stiffness.nrows();
     let mut table = [[c64::new(0.0, 0.0); MOST]; MOST];
     let mut inverses = [c64::new(0.0, 0.0); MOST];
@@ -74,6 +85,9 @@ fn restrain_few<const MOST: usize>(stiffness: MatRef<'_, f64>, out: &mut Recepta
             }
         }
         coupling[j * n + j] += 1.0;
+    }
+    if let Some(points) = points {
+        out.keep(points);
     }
     let columns = |out: &mut Receptance, change: &mut dyn FnMut(&mut [c64])| {
         out.contact.chunks_exact_mut(n).chain([&mut out.stuck[..]]).for_each(change);

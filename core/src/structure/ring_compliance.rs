@@ -67,11 +67,11 @@ impl Compliance for Ring {
         self.sectors.len() * self.layout.dofs
     }
 
-    fn effort(&self, observed: usize) -> [f64; 2] {
+    fn effort(&self, _points: usize, observed: usize) -> [f64; 2] {
         let interface = (2 * self.layout.interface.len()) as f64;
         let each = observed.div_ceil(self.sectors.len());
         self.sectors.iter().fold([0.0; 2], |[receptance, displacement], sector| {
-            let own = sector.effort(each);
+            let own = sector.effort(sector.contacts(), each);
             // Each is eliminated from the ring, with two neighbours beside it.
             [receptance + own[0] + 1e3 + 0.5 * interface.powi(3), displacement + own[1] + 200.0]
         })
@@ -135,7 +135,7 @@ impl Compliance for Ring {
     /// The modes of the whole disk take a decomposition of it; their damping is about that of the sectors
     /// with their neighbours held still.
     fn finds_modes(&self, asked: usize) -> bool {
-        pays_for_modes(self.dofs(), asked, self.effort(self.dofs())[0])
+        pays_for_modes(self.dofs(), asked, self.effort(0, self.dofs())[0])
     }
 
     /// Of the sectors with their neighbours held still, which takes no decomposition of the whole

@@ -102,9 +102,9 @@ impl Compliance for SparseCompliance {
         Ok(())
     }
 
-    fn effort(&self, _observed: usize) -> [f64; 2] {
+    fn effort(&self, points: usize, _observed: usize) -> [f64; 2] {
         let factors = self.contacts.effort();
-        [factors + self.contacts() as f64 * self.contacts.work(1.0, 1.0), factors]
+        [factors + points as f64 * self.contacts.work(1.0, 1.0), factors]
     }
 
     fn stuck_frequencies(&self) -> &[f64] {
@@ -121,7 +121,7 @@ impl Compliance for SparseCompliance {
 
     /// They take a decomposition of what is sparse.
     fn finds_modes(&self, asked: usize) -> bool {
-        pays_for_modes(self.dofs(), asked, self.effort(0)[0])
+        pays_for_modes(self.dofs(), asked, self.effort(self.contacts(), 0)[0])
     }
 
     fn lowest_frequencies(&self) -> Option<[f64; 2]> {
