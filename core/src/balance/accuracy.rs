@@ -98,7 +98,8 @@ impl Extension {
     pub(super) fn new(effort: &Effort<'_>, kept: &Harmonics, omega: f64, credit: f64) -> Self {
         let of = |own: &Effort<'_>| Self::of([effort, own], kept, omega, credit);
         let found = of(effort);
-        if !effort.takes_products(found.highest) {
+        // Nodes carry loads without slip.
+        if !effort.takes_products(found.highest) || effort.is_of_nodes() {
             return found;
         }
         let formed = of(&effort.formed());
@@ -119,7 +120,9 @@ impl Extension {
         let beyond = highest + least.max((SHARE * highest as f64) as usize);
         let farthest = FARTHEST.0 * highest + FARTHEST.1;
         let wanted = (reach.min(farthest as f64) as usize).max(beyond);
-        let (orders, steps) = (solution.orders(highest), OF_SOLUTION * solution.step(highest));
+        // Products with all modes may be reckoned far more than few that slip take.
+        let [of_solution, own] = [solution, effort].map(|effort| effort.step(highest));
+        let (orders, steps) = (solution.orders(highest), OF_SOLUTION * of_solution.min(own));
         // The compliances of the kept harmonics are known; all are recovered, after each step.
         let later = effort.with_more_slip();
         let account = |order: usize| {
@@ -237,7 +240,7 @@ pub(super) fn estimate(
         extended.hold_to_products(most);
     }
     if extension.part {
-        extended.answer(slipping_points(model, point));
+        extended.answer(loaded_points(model, point));
     }
     extended.watch(interrupted);
     if extended.set_omega_beside(point.omega, solved).is_err() {
@@ -311,13 +314,13 @@ fn of_extended(
     Ok(Some(found))
 }
 
-/// Points of the contacts that slip in a solution.
-fn slipping_points(model: &Model, point: &Point) -> Vec<usize> {
-    let slip = |points: &Range<usize>| {
+/// Points of the contacts that slip in a solution, and of nodes, which carry loads without slip.
+fn loaded_points(model: &Model, point: &Point) -> Vec<usize> {
+    let slips = |points: &Range<usize>| {
         point.contacts[points.clone()].iter().any(|contact| contact.slip_fraction > 0.0)
     };
-    let slipping = model.points().iter().filter(|points| slip(points));
-    slipping.flat_map(Range::clone).collect()
+    let loaded = model.points().iter().filter(|points| points.len() > 1 || slips(points));
+    loaded.flat_map(Range::clone).collect()
 }
 
 /// Which contacts slip where the tangents are known.

@@ -65,7 +65,11 @@ impl<'a> Effort<'a> {
     pub(super) fn new(model: &'a Model, half_wave: bool, slipping: usize, observed: usize) -> Self {
         let compliance = model.compliance();
         let [whole, displacement] = compliance.effort(compliance.contacts(), observed);
-        let part = compliance.effort(slipping, observed)[0];
+        // Nodes carry loads without slip: what presses them.
+        let nodes: usize =
+            model.laws().iter().map(|law| law.displacements()).filter(|n| *n > 1).sum();
+        let loaded = (slipping + nodes).min(compliance.contacts());
+        let part = compliance.effort(loaded, observed)[0];
         let part = if part < WORTH * whole { part } else { whole };
         let of_order = [whole, part, displacement];
         let coupled = coupled_points(model);
@@ -80,6 +84,11 @@ impl<'a> Effort<'a> {
     /// Whether Jacobians are formed in any case.
     pub(super) fn is_formed(&self) -> bool {
         self.formed
+    }
+
+    /// Whether some law couples several points.
+    pub(super) fn is_of_nodes(&self) -> bool {
+        self.coupled > 1.0
     }
 
     /// Whether products serve up to an order.
@@ -108,7 +117,7 @@ impl<'a> Effort<'a> {
 
     /// Effort of an estimate up to the last order over that of the steps of the solution up to the first.
     pub(super) fn allowed(&self, [highest, order]: [usize; 2]) -> f64 {
-        let coupled = self.coupled > 1.0;
+        let coupled = self.is_of_nodes();
         if self.compliance().ring().is_some() {
             ALLOWED_OF_RING[0]
         } else if coupled && self.is_of_many(order) {
