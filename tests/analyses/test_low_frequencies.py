@@ -64,8 +64,8 @@ def test_a_point_that_nothing_affordable_solves_is_given_up_early(tmp_path) -> N
     assert frf.arrays.solved.all()
     assert not frf.converged.any()
     worst = max(frf.error_estimate(dof)[0] / frf.amplitude(dof)[0] for dof in frf.dofs)
-    # A second step counts, up to twice the first.
-    assert frf.settings.tolerance < worst < 0.2
+    # What an estimate may take does not reach far behind its harmonics: it is a rough one.
+    assert frf.settings.tolerance < worst < 0.4
     assert frf.iterations[0] < 1000
     assert "raise tolerance" in frf.status[0].advice
     frf.save(tmp_path / "low.nc")
