@@ -357,44 +357,29 @@ fn a_strongly_damped_high_mode_hides_no_coupling_of_low_ones() {
     assert!(base == "complex modes" || base == "direct", "{base}");
 }
 
-/// Of a mass and a stiffness matrix.
-type Damping<'a> = &'a dyn Fn(&Mat<f64>, &Mat<f64>) -> Mat<f64>;
-
 /// Receptances of loads at some points are those of these points among all, however they are found.
 #[test]
 fn loads_at_some_points_are_answered_as_among_all() {
-    let chain = |contacts: usize, damping: Damping<'_>| {
-        let size = contacts + 3;
-        let stiffness = Mat::from_fn(size, size, |i, j| match i.abs_diff(j) {
-            0 => 5e4,
-            1 => -2e4,
-            _ => -1.0,
-        });
-        let mass = Mat::from_fn(size, size, |i, j| if i == j { 1.0 + i as f64 } else { 0.0 });
-        let damping = damping(&mass, &stiffness);
-        let structure =
-            Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref()).unwrap();
-        let rows = Mat::from_fn(contacts, size, |i, j| if j == i + 1 { 1.0 } else { 0.0 });
-        let held = Mat::from_fn(contacts, contacts, |i, j| if i == j { 3e4 } else { 0.0 });
-        let amplitude = (0..size).map(|i| c64::new(1.0, 0.1 * i as f64)).collect();
-        let loads = vec![HarmonicLoad { harmonic: 1, amplitude }];
-        (structure, Ports { rows: rows.into(), stiffness: held.into(), loads })
-    };
-    let by_mass = |mass: &Mat<f64>, _: &Mat<f64>| faer::Scale(2.0) * mass;
-    let by_stiffness = |_: &Mat<f64>, stiffness: &Mat<f64>| faer::Scale(1e-3) * stiffness;
-    let local = |mass: &Mat<f64>, _: &Mat<f64>| {
-        Mat::from_fn(mass.nrows(), mass.nrows(), |i, j| if i == j && i < 2 { 9.0 } else { 0.0 })
-    };
     let mut bases = Vec::new();
     // By hand and by a library, by sums and by products of matrices, and seen from the contacts.
     for contacts in [1, 3, 9, 17, 30, 140] {
-        let dampings: [Damping<'_>; 3] = [&by_mass, &by_stiffness, &local];
-        for damping in dampings {
-            let (structure, ports) = chain(contacts, damping);
-            let (compliance, base) = compliance(&structure, &ports).unwrap();
+        let size = contacts + 3;
+        let full = |own: f64, next: f64, other: f64| {
+            Mat::from_fn(size, size, |i, j| [own, next, other][i.abs_diff(j).min(2)])
+        };
+        let stiffness = full(5e4, -2e4, -1.0);
+        let mass = Mat::from_fn(size, size, |i, j| if i == j { 1.0 + i as f64 } else { 0.0 });
+        let local = Mat::from_fn(size, size, |i, j| if i == j && i < 2 { 9.0 } else { 0.0 });
+        for damping in [faer::Scale(2.0) * &mass, faer::Scale(1e-3) * &stiffness, local] {
+            let structure = Structure::new(mass.as_ref(), damping.as_ref(), stiffness.as_ref());
+            let rows = Mat::from_fn(contacts, size, |i, j| if j == i + 1 { 1.0 } else { 0.0 });
+            let held = faer::Scale(3e4) * Mat::<f64>::identity(contacts, contacts);
+            let amplitude = (0..size).map(|i| c64::new(1.0, 0.1 * i as f64)).collect();
+            let loads = vec![HarmonicLoad { harmonic: 1, amplitude }];
+            let ports = Ports { rows: rows.into(), stiffness: held.into(), loads };
+            let (compliance, base) = compliance(&structure.unwrap(), &ports).unwrap();
             bases.push(base);
-            let points = [contacts - 1, contacts / 2, 0];
-            let points = &points[..contacts.min(3)];
+            let points = &[contacts - 1, contacts / 2, 0][..contacts.min(3)];
             for (harmonic, omega) in [(0, 90.0), (1, 90.0), (3, 110.0)] {
                 let [mut whole, mut some] = [Receptance::default(), Receptance::default()];
                 compliance.receptance(harmonic, omega, &mut whole).unwrap();

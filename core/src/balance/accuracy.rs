@@ -120,9 +120,7 @@ impl Extension {
         let beyond = highest + least.max((SHARE * highest as f64) as usize);
         let farthest = FARTHEST.0 * highest + FARTHEST.1;
         let wanted = (reach.min(farthest as f64) as usize).max(beyond);
-        // Products with all modes may be reckoned far more than few that slip take.
-        let [of_solution, own] = [solution, effort].map(|effort| effort.step(highest));
-        let (orders, steps) = (solution.orders(highest), OF_SOLUTION * of_solution.min(own));
+        let (orders, steps) = (solution.orders(highest), OF_SOLUTION * solution.step(highest));
         // The compliances of the kept harmonics are known; all are recovered, after each step.
         let later = effort.with_more_slip();
         let account = |order: usize| {
