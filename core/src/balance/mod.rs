@@ -59,7 +59,7 @@ pub use forced::ForcedBalance;
 pub(crate) use forced::WarmStart;
 pub(crate) use history::history_of;
 pub use history::with_history;
-pub(crate) use kept::keep;
+pub(crate) use kept::{keep, keep_instead};
 pub use kept::{without_gap, Kept};
 pub(crate) use limit_load::{is_carried_away, is_let_go};
 pub use linearised::{Cause, FrequencyJets, Linearised};

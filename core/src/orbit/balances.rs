@@ -1,7 +1,9 @@
 //! Balances of one model, each of which a piece of a curve is followed with.
 
 use super::rescue::OrbitInitialGuess;
-use crate::balance::{history_of, ForcedBalance, Kept, Point, Progress, Settings, MUCH};
+use crate::balance::{
+    history_of, keep_instead, ForcedBalance, Kept, Point, Progress, Settings, MUCH,
+};
 use crate::model::Model;
 use crate::Error;
 use std::sync::Arc;
@@ -40,6 +42,11 @@ impl<'a> Balances<'a> {
     pub fn cut_from(mut self, operations: f64) -> Self {
         self.much = operations;
         self
+    }
+
+    /// Keeps these points and no others.
+    pub(super) fn keep_only(&self, points: &[Arc<Point>]) {
+        keep_instead(Some(self.kept), points);
     }
 
     /// Does some work with a balance that keeps its points.

@@ -50,7 +50,12 @@ pub fn sweep_range_in_pieces(
                 0 => balance.solve(from, None)?,
                 _ => seam(&mut balance, omega[number])?,
             };
-            Ok((Arc::new(point), balance.into_profile()))
+            let point = Arc::new(point);
+            if number == 0 {
+                // The one that a curve that is ended here has.
+                balances.keep_only(std::slice::from_ref(&point));
+            }
+            Ok((point, balance.into_profile()))
         })
     });
     let (mut ends, mut profile, mut ended) = (Vec::new(), Profile::default(), false);
@@ -105,6 +110,8 @@ fn piece(
     };
     // Of pieces that are behind a gap nothing is told.
     if number == 0 {
+        // Its first point is kept once more.
+        balances.keep_only(&[]);
         balances.with(look, work)
     } else {
         balances.lent(look, work)

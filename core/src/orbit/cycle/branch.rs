@@ -23,6 +23,8 @@ use std::time::{Duration, Instant};
 const START_HARMONICS: usize = 15;
 /// First ratio beyond the onset, relative to it, where the range does not say.
 const BEYOND_ONSET: f64 = 0.01;
+/// Share of the progress when the first point is known: from then on there is something to keep.
+const BEGUN: f64 = 0.01;
 /// Time that an ended analysis may take to read off what it has found.
 const PATIENCE: Duration = Duration::from_millis(200);
 /// Motion, relative to the onset of slip, at which a branch counts as going to infinity.
@@ -105,7 +107,7 @@ impl Finder<'_> {
         let last = rungs.len() - 1;
         for (rung, &highest) in rungs.iter().enumerate() {
             let table = self.table(highest);
-            let sides = match self.follow_balance(&table, interrupted) {
+            let sides = match self.follow_balance(&table, interrupted, share) {
                 Err(_) if rung < last => continue,
                 other => other?,
             };
@@ -179,6 +181,7 @@ impl Finder<'_> {
             let mut curve = OrbitCurve::new(&of_ratio, scale, &guess, interrupted);
             at_parameter(&mut curve, &guess, value, 40).ok_or_else(|| self.no_start())?.0
         };
+        share.set(BEGUN);
         let mut of_ratio = OrbitCurve::new(&of_ratio, scale, &begin, interrupted);
         let mut curve = OrbitCurve::new(orbits, scale, &begin, interrupted);
         let sides = self.follow(&mut of_ratio, &mut curve, begin, &crate::solve::norm, scale)?;
@@ -263,8 +266,10 @@ impl Finder<'_> {
         &self,
         table: &SampleTable,
         interrupted: &dyn Fn() -> bool,
+        share: &Cell<f64>,
     ) -> Result<Sides, Error> {
         let start = self.first(table, interrupted)?;
+        share.set(BEGUN);
         let mut of_ratio = CycleBalance::new(&self.given, table, &start, interrupted);
         let mut curve = CycleBalance::new(self.family, table, &start, interrupted);
         let moved = |u: &[f64]| oscillation(table.harmonics(), u);
