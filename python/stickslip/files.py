@@ -14,6 +14,7 @@ import secrets
 import stat
 import time
 import zlib
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
@@ -26,6 +27,8 @@ _TEMPORARY = re.compile(
     rf"(?:{re.escape(_MARK)}([0-9a-f]{{8}})-(\d{{1,9}})-|\..+\.)[0-9a-f]{{8}}{re.escape(_END)}"
 )
 """Also as the first version named them, without host and process."""
+_PART = 1 << 26
+"""Bytes that are written, and seen onto the disk, between two looks at signals."""
 _STALE = 3600.0
 """Seconds after which a temporary file is one of a killed run: bytes take seconds to be written."""
 
@@ -44,12 +47,19 @@ _REMEDIES = {
 }
 
 
-def write(target: Path, content: bytes | bytearray | memoryview) -> None:
-    """Write a file whole, or leave everything as it was; an existing one is replaced."""
+def write(
+    target: Path,
+    content: bytes | bytearray | memoryview,
+    look: Callable[[], None] = lambda: None,
+) -> None:
+    """Write a file whole, or leave everything as it was; an existing one is replaced.
+
+    What `look` raises now and then ends it.
+    """
     require_place(target)
     temporary = _beside(target)
     try:
-        _write_anew(temporary, memoryview(content).cast("B"))
+        _write_anew(temporary, memoryview(content).cast("B"), look)
         os.replace(temporary, target)
     except OSError as error:
         raise refusal(target, "cannot be written", error) from error
@@ -88,7 +98,7 @@ def require_writable(folder: Path) -> None:
     """Refuse a folder in which no file can be made; better now than when all is computed."""
     probe = _beside(folder / "probe")
     try:
-        _write_anew(probe, memoryview(b""))
+        _write_anew(probe, memoryview(b""), lambda: None)
     except OSError as error:
         raise refusal(folder, "cannot be written to", error) from error
     finally:
@@ -108,18 +118,19 @@ def _beside(target: Path) -> Path:
     return target.with_name(f"{_MARK}{_HOST}-{os.getpid()}-{secrets.token_hex(4)}{_END}")
 
 
-def _write_anew(file: Path, content: memoryview) -> None:
+def _write_anew(file: Path, content: memoryview, look: Callable[[], None]) -> None:
     """Write bytes to a new file, and see them onto the disk."""
     # O_BINARY: Windows would translate the ends of lines.
     flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
     handle = os.open(file, flags, 0o666)
     try:
         while content:
-            count = os.write(handle, content)
+            look()
+            count = os.write(handle, content[:_PART])
             if count == 0:
                 raise OSError(errno.EIO, os.strerror(errno.EIO))
             content = content[count:]
-        os.fsync(handle)
+            os.fsync(handle)
     finally:
         os.close(handle)
 

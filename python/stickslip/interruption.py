@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Future, wait
 from contextlib import contextmanager
 from types import FrameType, TracebackType
-from typing import Any, Self, TypeVar
+from typing import Any, Self, TypeAlias, TypeVar
 
 from stickslip.errors import Interrupted
 
@@ -22,6 +22,9 @@ _IMPATIENT = 0.5
 """Seconds after which a second signal is one of its own, not an echo of the first."""
 
 Kind = TypeVar("Kind")
+
+Making: TypeAlias = Callable[[Callable[[float], None] | None], Kind]
+"""Makes a result of what was computed; looks at signals by what it is given, if it is."""
 
 
 class Interruption:
@@ -41,6 +44,8 @@ class Interruption:
         self._installed = self._handlers.copy()
         self._noted: tuple[int, float] | None = None
         self._at_once = False
+        self._outer: Interruption | None = None
+        """The block around this one, in which signals wait, too."""
         self._whole: Interrupted | None = None
         """What a signal becomes once all is computed."""
 
@@ -53,6 +58,7 @@ class Interruption:
                     # Within another such block that one must not put the signal off once more.
                     outer = getattr(handler, "__self__", None)
                     if isinstance(outer, Interruption):
+                        self._outer = outer
                         handler = outer._handlers[number]
                     self._handlers[number] = handler
                     signal.signal(number, self._note)
@@ -89,6 +95,16 @@ class Interruption:
             number, self._noted = self._noted[0], None
             self._handlers[number](number, None)
 
+    def pass_on(self) -> None:
+        """Heed a signal, unless it is the first one that waits in the block around this one."""
+        outer = self._outer
+        if outer is None or outer._at_once:
+            self.heed()
+        elif self._noted is not None and outer._noted is None:
+            outer._noted, self._noted = self._noted, None
+        elif outer._noted is not None and time.monotonic() > outer._noted[1] + _IMPATIENT:
+            self.heed()
+
     @contextmanager
     def at_once(self) -> Iterator[None]:
         """Heed signals at any line of a block that can be left anywhere."""
@@ -111,11 +127,25 @@ class Interruption:
 
         If a signal comes after the last point, until the block is left, `Interrupted` holds it.
         """
-        self._whole = Interrupted(
-            f"{what} interrupted when all was computed; the result of this exception is complete",
-            result,
-        )
+        return self.made(lambda _: result, what)
+
+    def made(self, make: Making[Kind], what: str) -> Kind:
+        """Return a `completed` result that is still to be made of what was computed.
+
+        A signal ends the making, which then waits until `Interrupted` is asked for the result.
+        """
+        made: list[Kind] = []
+
+        def once(look: Callable[[float], None] | None = None) -> Kind:
+            if not made:
+                made.append(make(look))
+            return made[0]
+
+        said = "interrupted when all was computed; the result of this exception is complete"
+        self._whole = Interrupted.later(f"{what} {said}", once, complete=True)
         try:
+            with self.at_once():
+                result = once(self)
             self(1.0)
         except KeyboardInterrupt:
             raise self._whole from None
@@ -140,7 +170,13 @@ def beside(make: Callable[[], Kind]) -> Kind:
 
 def stopped(what: str, count: str, result: object, advice: str = "") -> Interrupted:
     """Return the exception of an analysis that was stopped, which holds what was computed."""
-    return Interrupted(
-        f"{what} interrupted after {count}, which the result of this exception holds{advice}",
-        result,
-    )
+    return Interrupted(_stopped(what, count, advice), result)
+
+
+def stopped_before(what: str, count: str, make: Making[object]) -> Interrupted:
+    """Return the exception of an analysis that was `stopped`, whose result is still to be made."""
+    return Interrupted.later(_stopped(what, count), lambda: make(None), complete=False)
+
+
+def _stopped(what: str, count: str, advice: str = "") -> str:
+    return f"{what} interrupted after {count}, which the result of this exception holds{advice}"

@@ -8,9 +8,8 @@ with HDF5": dimensions are HDF5's dimension scales, those without numbers have a
 from __future__ import annotations
 
 import io
-import math
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -20,6 +19,9 @@ from stickslip.results.dataset import Record, Variable
 if TYPE_CHECKING:
     import h5py  # type: ignore[import-untyped, unused-ignore]
 
+Look: TypeAlias = Callable[[], None]
+"""Looks at signals, and raises what they ask for."""
+
 _NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable"
 """Marks what has a length and no numbers."""
 _HIDDEN = (
@@ -27,14 +29,16 @@ _HIDDEN = (
     *("_Netcdf4Dimid", "_Netcdf4Coordinates", "_nc3_strict", "_NCProperties"),
 )
 """Attributes by which files say what dimensions and coordinates are."""
+_SLAB = 8_000_000
+"""Bytes that are packed in less than a second, between two looks at signals."""
 _PACKED = {"compression": "gzip", "compression_opts": 1, "shuffle": True, "fletcher32": True}
 
 
-def netcdf(record: Record, plain: str) -> memoryview:
+def netcdf(record: Record, plain: str, look: Look) -> memoryview:
     """Return the bytes of a file: tables packed, with check sums, and nothing encoded.
 
     No number stands for a missing one: every bit pattern counts. The variable that is called
-    `plain` is not packed.
+    `plain` is not packed. What `look` raises now and then ends it.
     """
     import h5py
 
@@ -47,7 +51,7 @@ def netcdf(record: Record, plain: str) -> memoryview:
         for number, (dim, size) in enumerate(record.sizes.items()):
             name = str(dim)
             if name in record and record[name].dims == (name,):
-                scale = _written(file, name, record[name], packed=name != plain)
+                scale = _written(file, name, record[name], look, packed=name != plain)
                 scale.make_scale(name)
             else:
                 scale = file.create_dataset(name, **_extent((size,)), dtype=">f4", track_order=True)
@@ -58,7 +62,7 @@ def netcdf(record: Record, plain: str) -> memoryview:
         for name, variable in record.variables.items():
             if variable.dims == (name,):
                 continue
-            made = _written(file, name, variable, packed=name != plain)
+            made = _written(file, name, variable, look, packed=name != plain)
             for axis, dim in enumerate(variable.dims):
                 made.dims[axis].attach_scale(scales[dim])
             if variable.dims:
@@ -74,7 +78,9 @@ def netcdf(record: Record, plain: str) -> memoryview:
     return content.getbuffer()
 
 
-def _written(file: h5py.File, name: str, variable: Variable, *, packed: bool) -> h5py.Dataset:
+def _written(
+    file: h5py.File, name: str, variable: Variable, look: Look, *, packed: bool
+) -> h5py.Dataset:
     import h5py
 
     values, about = variable.values, variable.attrs
@@ -90,10 +96,22 @@ def _written(file: h5py.File, name: str, variable: Variable, *, packed: bool) ->
     made = file.create_dataset(
         name, **_extent(values.shape), dtype=kind, track_order=True, **options
     )
-    if values.size:
-        made[...] = values
+    for slab in _slabs(made):
+        look()
+        made[slab] = values[slab]
     _write_attributes(made, about)
     return made
+
+
+def _slabs(dataset: h5py.Dataset) -> Iterator[Any]:
+    """Give the parts of a dataset that are read or written at once: some of its whole chunks."""
+    if not dataset.size or not dataset.ndim or dataset.nbytes <= _SLAB:
+        yield from [...] * bool(dataset.size)
+        return
+    chunk = dataset.chunks[0] if dataset.chunks else 1
+    rows = max(1, _SLAB * dataset.shape[0] // dataset.nbytes // chunk) * chunk
+    for start in range(0, dataset.shape[0], rows):
+        yield slice(start, start + rows)
 
 
 def _extent(shape: tuple[int, ...]) -> dict[str, Any]:
@@ -108,8 +126,11 @@ def _write_attributes(owner: h5py.File | h5py.Dataset, attrs: Mapping[str, Any])
         owner.attrs[name] = value if isinstance(value, str) else np.atleast_1d(value)
 
 
-def record_of(content: bytes) -> Record:
-    """Return the record that a file holds; what it raises depends on the damage of a file."""
+def record_of(content: bytes, look: Look) -> Record:
+    """Return the record that a file holds; what it raises depends on the damage of a file.
+
+    What `look` raises now and then ends it.
+    """
     import h5py
 
     variables: dict[str, Variable] = {}
@@ -126,7 +147,7 @@ def record_of(content: bytes) -> Record:
             for dim, size in zip(dims, stored.shape, strict=True):
                 if sizes.get(dim, (size,))[:1] != (size,):
                     raise ValueError(f"{name} has {size} entries of {dim!r}, it {sizes[dim]}")
-            variables[name] = _read(stored, dims)
+            variables[name] = _read(stored, dims, look)
         return Record(variables, _attributes(file))
 
 
@@ -144,12 +165,14 @@ def _dimensions(file: h5py.File, name: str) -> tuple[str, ...]:
     return ()
 
 
-def _read(stored: h5py.Dataset, dims: tuple[str, ...]) -> Variable:
+def _read(stored: h5py.Dataset, dims: tuple[str, ...], look: Look) -> Variable:
     import h5py
 
     about = _attributes(stored)
-    # HDF5 asks for the memory of what it has not been given.
-    values = stored[...] if math.prod(stored.shape) else np.empty(stored.shape, stored.dtype)
+    values = np.empty(stored.shape, stored.dtype)
+    for slab in _slabs(stored):
+        look()
+        values[slab] = stored[slab]
     if values.dtype == "S1" and values.ndim:
         # Texts of one length are characters along a dimension of their own.
         joined = np.ascontiguousarray(values).view(f"S{values.shape[-1]}")

@@ -11,7 +11,7 @@ import hashlib
 import re
 import subprocess
 import sys
-from collections.abc import Hashable
+from collections.abc import Callable, Hashable
 
 import numpy as np
 
@@ -20,6 +20,8 @@ SEAL = "seal"
 
 _MARK = bytes.fromhex("b7f3c1a9e88d9cfe94d0a6b1ff82c5e9") + b"stickslip seal 1"
 _DIGEST = 32
+_PART = 1 << 26
+"""Bytes that are digested between two looks at signals."""
 _PATIENCE = 20.0
 """Seconds for a file, which take the start of Python into account, also on a busy machine."""
 _PACE = 5e6
@@ -53,23 +55,26 @@ def seal_variable() -> dict[Hashable, object]:
     return {SEAL: ("seal_byte", entries, {"units": "1", "long_name": meaning})}
 
 
-def sealed(content: memoryview) -> memoryview:
-    """Fill in the digest of a file that has the variable, and return the file."""
+def sealed(content: memoryview, look: Callable[[], None]) -> memoryview:
+    """Fill in the digest of a file that has the variable, and return the file.
+
+    What `look` raises now and then ends it.
+    """
     # A memoryview has no `find`, and a file is too large to be copied for it.
     mark = re.search(re.escape(_MARK), content)
     if mark is None:
         raise ValueError("the file has no variable for the seal")
-    content[mark.end() : mark.end() + _DIGEST] = _digest(content, mark.end())
+    content[mark.end() : mark.end() + _DIGEST] = _digest(content, mark.end(), look)
     return content
 
 
-def sealed_whole(content: bytes) -> bool | None:
+def sealed_whole(content: bytes, look: Callable[[], None]) -> bool | None:
     """Tell whether a file is as it was saved; None if it has no seal."""
     place = content.find(_MARK)
     if place < 0:
         return None
     start = place + len(_MARK)
-    return content[start : start + _DIGEST] == _digest(content, start)
+    return content[start : start + _DIGEST] == _digest(content, start, look)
 
 
 def require_harmless(content: bytes) -> None:
@@ -87,9 +92,11 @@ def require_harmless(content: bytes) -> None:
         raise ValueError(told[-1] if told and done.returncode > 0 else "its reader crashed")
 
 
-def _digest(content: bytes | memoryview, start: int) -> bytes:
+def _digest(content: bytes | memoryview, start: int, look: Callable[[], None]) -> bytes:
     mark = hashlib.blake2b(digest_size=_DIGEST)
     view = memoryview(content)
-    for part in (view[:start], bytes(_DIGEST), view[start + _DIGEST :]):
-        mark.update(part)
+    for part in (view[:start], memoryview(bytes(_DIGEST)), view[start + _DIGEST :]):
+        for begin in range(0, len(part), _PART):
+            look()
+            mark.update(part[begin : begin + _PART])
     return mark.digest()

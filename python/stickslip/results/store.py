@@ -14,10 +14,11 @@ import numpy as np
 from stickslip.checks import brief, file_path, is_file, listed
 from stickslip.errors import ModelError
 from stickslip.files import refusal, require_place, write
+from stickslip.interruption import Interruption
 from stickslip.memory import SHARE, physical_memory
 from stickslip.model import Model
 from stickslip.results.dataset import Record, Variable
-from stickslip.results.netcdf import netcdf, record_of
+from stickslip.results.netcdf import Look, netcdf, record_of
 from stickslip.results.seal import SEAL, require_harmless, seal_variable, sealed, sealed_whole
 from stickslip.results.stored_model import model_of, model_variables
 
@@ -76,7 +77,9 @@ def save_record(path: str | os.PathLike[str], kind: str, record: Record) -> None
     require_place(target)
     about = {"stickslip_format": FORMAT, "stickslip_kind": kind}
     record = _split(record).assign(seal_variable()).assign_attrs(about)
-    write(target, sealed(netcdf(record, plain=SEAL)))
+    with Interruption() as watch:
+        look = watch.pass_on
+        write(target, sealed(netcdf(record, SEAL, look), look), look)
 
 
 def load(path: str | os.PathLike[str]) -> Any:
@@ -147,13 +150,18 @@ def content_of(source: Path) -> bytes:
 
 def _read(source: Path) -> Record:
     content = content_of(source)
-    whole = sealed_whole(content)
+    with Interruption() as watch:
+        return _read_of(source, content, watch.heed)
+
+
+def _read_of(source: Path, content: bytes, look: Look) -> Record:
+    whole = sealed_whole(content, look)
     if whole is False:
         raise _changed(source)
     try:
         if whole is None:
             require_harmless(content)
-        record = record_of(content)
+        record = record_of(content, look)
     except Exception as error:
         # The readers raise whatever the bytes of a damaged file lead them to.
         raise ModelError(
