@@ -10,6 +10,7 @@ from stickslip.analyses.run import Progress, Run
 from stickslip.checks import brief
 from stickslip.disk import BladedDisk
 from stickslip.errors import ModelError
+from stickslip.interruption import stopped
 from stickslip.model import Model, natural_frequencies
 from stickslip.model.configurations import every_point
 from stickslip.results.campbell import Campbell, CampbellArrays
@@ -55,34 +56,52 @@ def campbell(
         raise ModelError("speed: nothing is excited at rest; give speeds above 0 rad/s")
     if settings.diagram == "campbell" and speeds.size == 1:
         raise ModelError("speed: one alone makes no line; give several")
-    found, members = [], []
+    found, members = list[tuple[Float, Float]](), list[Model]()
+
+    def result(*, interrupted: bool) -> Campbell:
+        stuck, slipping = (np.array([pair[which] for pair in found]) for which in (0, 1))
+        return Campbell(
+            model=members[0],
+            dofs=members[0].structure.dofs,
+            interrupted=interrupted,
+            timings={},
+            counters={"speeds": len(found)},
+            diagnostics=(),
+            settings=CampbellSettings.of(**settings.part(CampbellSettings)),
+            arrays=CampbellArrays(
+                speed=speeds[: len(found)],
+                diameter=np.arange(stuck.shape[1]),
+                stuck=stuck,
+                slipping=slipping,
+            ),
+        )
+
     with Run("campbell", progress) as run:
-        for number, speed in enumerate(speeds.tolist()):
-            model = model_at(models, speed)
-            if settings.diagram != "campbell" and not isinstance(model, BladedDisk):
-                raise ModelError(
-                    f"diagram: {settings.diagram} is that of a tuned disk; give ss.BladedDisk(...)",
-                    study=f"kind: {settings.diagram} is that of a tuned disk; add the table [disk]",
-                )
-            members.append(model)
-            found.append(_frequencies(model))
-            run.reached((number + 1) / speeds.size)
-    diameters = np.arange(found[0][0].shape[0])
-    stuck, slipping = (np.array([pair[which] for pair in found]) for which in (0, 1))
-    result = Campbell(
-        model=members[0],
-        dofs=members[0].structure.dofs,
-        interrupted=False,
-        timings={},
-        counters={"speeds": speeds.size},
-        diagnostics=(),
-        settings=CampbellSettings.of(**settings.part(CampbellSettings)),
-        arrays=CampbellArrays(speed=speeds, diameter=diameters, stuck=stuck, slipping=slipping),
-    )
-    if settings.diagram != "nodal-diameters" and not all(result.orders):
-        reason = "orders: forces of engine order 0 have no frequency that goes with the speed; give"
-        raise ModelError(f"{reason} orders=[...]", study=f"{reason} 'orders'")
-    return result
+        try:
+            with run.at_once():
+                for number, speed in enumerate(speeds.tolist()):
+                    model = model_at(models, speed)
+                    if settings.diagram != "campbell" and not isinstance(model, BladedDisk):
+                        reason = f"{settings.diagram} is that of a tuned disk"
+                        raise ModelError(
+                            f"diagram: {reason}; give ss.BladedDisk(...)",
+                            study=f"kind: {reason}; add the table [disk]",
+                        )
+                    members.append(model)
+                    found.append(_frequencies(model))
+                    run.reached((number + 1) / speeds.size)
+        except KeyboardInterrupt:
+            if not found:
+                raise
+            own = result(interrupted=True)
+            raise stopped(
+                "Campbell diagram", f"{len(found)} of {speeds.size} speeds", own
+            ) from None
+        whole = result(interrupted=False)
+        if settings.diagram != "nodal-diameters" and not all(whole.orders):
+            reason = "orders: forces of engine order 0 have no frequency that goes with the speed"
+            raise ModelError(f"{reason}; give orders=[...]", study=f"{reason}; give 'orders'")
+        return run.completed(whole, "Campbell diagram")
 
 
 def model_at(build: object, speed: float) -> Model:
