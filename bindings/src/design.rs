@@ -22,25 +22,25 @@ use stickslip_core::Model;
 
 /// Some of the peaks of a curve along a parameter.
 fn written<'py>(py: Python<'py>, peaks: &[Peak], curve: &Curve) -> PyResult<Bound<'py, PyAny>> {
-    let columns = Columns::new(py);
+    let mut columns = Columns::default();
     let peaks = || peaks.iter();
-    columns.one("value", peaks().map(|p| p.value))?;
-    columns.one("omega", peaks().map(|p| p.omega))?;
-    columns.one("amplitude", peaks().map(|p| p.amplitude))?;
-    columns.one("sensitivity", peaks().map(|p| p.slope))?;
-    columns.one("error_estimate", peaks().map(|p| p.error_estimate))?;
-    columns.one("harmonics", peaks().map(|p| p.harmonics as i64))?;
-    columns.one("at_edge", peaks().map(|p| p.at_edge))?;
-    columns.one("status", peaks().map(|p| p.status as u8))?;
+    columns.one("value", peaks().map(|p| p.value));
+    columns.one("omega", peaks().map(|p| p.omega));
+    columns.one("amplitude", peaks().map(|p| p.amplitude));
+    columns.one("sensitivity", peaks().map(|p| p.slope));
+    columns.one("error_estimate", peaks().map(|p| p.error_estimate));
+    columns.one("harmonics", peaks().map(|p| p.harmonics as i64));
+    columns.one("at_edge", peaks().map(|p| p.at_edge));
+    columns.one("status", peaks().map(|p| p.status as u8));
     let bound =
         |of: fn(&PeakBounds) -> f64| peaks().map(move |p| p.bounds.as_ref().map_or(f64::NAN, of));
-    columns.one("lower", bound(|bounds| bounds.lower))?;
-    columns.one("upper", bound(|bounds| bounds.upper))?;
-    columns.one("unique", peaks().map(|p| uniqueness_code(p.bounds.map(|one| one.unique))))?;
-    columns.one("guaranteed", peaks().map(|p| p.bounds.is_some_and(|bounds| bounds.proved)))?;
-    columns.tell("interrupted", curve.interrupted)?;
-    columns.effort(&curve.profile, ("points", curve.points))?;
-    columns.end()
+    columns.one("lower", bound(|bounds| bounds.lower));
+    columns.one("upper", bound(|bounds| bounds.upper));
+    columns.one("unique", peaks().map(|p| uniqueness_code(p.bounds.map(|one| one.unique))));
+    columns.one("guaranteed", peaks().map(|p| p.bounds.is_some_and(|bounds| bounds.proved)));
+    columns.tell("interrupted", curve.interrupted);
+    columns.effort(&curve.profile, ("points", curve.points));
+    columns.end(py)
 }
 
 /// The peak that is followed: `DamperSettings` of Python.

@@ -36,16 +36,16 @@ pub fn fates<'py>(
         |of: fn(&Classification) -> &[f64]| fates().map(move |fate| fate.map_or(&[][..], of));
     let reasons = || fates().map(|fate| fate.map_or(Reason::Interrupted, |fate| fate.reason));
     let modes = fates().map(|fate| fate.and_then(|fate| fate.mode).map_or(-1, |mode| mode as i64));
-    let columns = Columns::new(py);
-    columns.one("reason", reasons().map(|reason| reason as u8))?;
-    columns.one("mode", modes)?;
-    columns.one("share", numbers(|fate| fate.share))?;
-    columns.one("omega", numbers(|fate| fate.omega))?;
-    columns.one("time", numbers(|fate| fate.time))?;
-    columns.one("events", fates().map(|fate| fate.map_or(0, |fate| fate.events as i64)))?;
-    columns.numbers("amplitude", dofs, rows(|fate| &fate.amplitude))?;
-    columns.numbers("final", states, rows(|fate| &fate.state))?;
-    columns.tell("interrupted", reasons().any(|reason| reason == Reason::Interrupted))?;
-    columns.tell("seconds", began.elapsed().as_secs_f64())?;
-    columns.end()
+    let mut columns = Columns::default();
+    columns.one("reason", reasons().map(|reason| reason as u8));
+    columns.one("mode", modes);
+    columns.one("share", numbers(|fate| fate.share));
+    columns.one("omega", numbers(|fate| fate.omega));
+    columns.one("time", numbers(|fate| fate.time));
+    columns.one("events", fates().map(|fate| fate.map_or(0, |fate| fate.events as i64)));
+    columns.numbers("amplitude", dofs, rows(|fate| &fate.amplitude));
+    columns.numbers("final", states, rows(|fate| &fate.state));
+    columns.tell("interrupted", reasons().any(|reason| reason == Reason::Interrupted));
+    columns.tell("seconds", began.elapsed().as_secs_f64());
+    columns.end(py)
 }

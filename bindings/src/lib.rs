@@ -8,6 +8,7 @@ mod columns;
 mod contacts;
 mod design;
 mod fates;
+mod found;
 mod limit_cycles;
 mod mistuning;
 mod modes;
@@ -32,6 +33,7 @@ mod _core {
         contacts::{contact_force, contact_phases},
         design::{damper_curve, optimal_damper, peak_map, sensitivity},
         fates::fates,
+        found::Found,
         limit_cycles::{limit_cycles, period_multipliers},
         mistuning::{mistuning_study, summits, TunedDisk},
         modes::nonlinear_mode,

@@ -2,9 +2,10 @@
 
 use crate::arrays::{is_half_wave, matrices, matrix, series, Array2, Array3};
 use crate::columns::Columns;
+use crate::found::Found;
 use crate::problem::Problem;
 use crate::settings::{self, get, harmonics};
-use crate::watch::{computed, whole};
+use crate::watch::{found, whole};
 use numpy::{Complex64, PyArray1};
 use pyo3::prelude::*;
 use std::sync::Arc;
@@ -16,33 +17,29 @@ use stickslip_core::solve::End;
 use stickslip_core::Model;
 
 /// Limit cycles along a branch.
-fn branch<'py>(
-    py: Python<'py>,
-    found: &orbit::LimitCycles,
-    model: &Model,
-) -> PyResult<Bound<'py, PyAny>> {
+fn branch(found: &orbit::LimitCycles, model: &Model) -> Columns {
     let (dofs, contacts) = (model.compliance().dofs(), model.compliance().contacts());
     let states = model.states();
     let cycles = || found.cycles.iter();
-    let columns = Columns::new(py);
-    columns.responses(cycles().map(|c| &c.response), dofs, contacts)?;
-    columns.one("value", cycles().map(|c| c.value))?;
-    columns.one("ratio", cycles().map(|c| c.ratio))?;
-    columns.one("slipping", cycles().map(|c| c.slipping))?;
-    columns.one("closed", cycles().map(|c| c.closed))?;
-    columns.ranges(dofs, cycles().map(|c| c.range.as_slice()))?;
-    columns.numbers("state", states, cycles().map(|c| c.state.as_slice()))?;
+    let mut columns = Columns::default();
+    columns.responses(cycles().map(|c| &c.response), dofs, contacts);
+    columns.one("value", cycles().map(|c| c.value));
+    columns.one("ratio", cycles().map(|c| c.ratio));
+    columns.one("slipping", cycles().map(|c| c.slipping));
+    columns.one("closed", cycles().map(|c| c.closed));
+    columns.ranges(dofs, cycles().map(|c| c.range.as_slice()));
+    columns.numbers("state", states, cycles().map(|c| c.state.as_slice()));
     let multipliers = cycles().map(|c| (c.multipliers.as_slice(), c.neutral));
-    columns.multipliers(states.saturating_sub(1), multipliers)?;
+    columns.multipliers(states.saturating_sub(1), multipliers);
     let turn = found.limit.map_or([f64::NAN; 2], |turn| [turn.value, turn.omega]);
-    columns.one("turn", turn)?;
-    columns.rows("folds", 2, f64::NAN, found.folds.iter().map(|turn| [turn.value, turn.omega]))?;
+    columns.one("turn", turn);
+    columns.rows("folds", 2, f64::NAN, found.folds.iter().map(|turn| [turn.value, turn.omega]));
     let changes = || found.changes.iter();
-    columns.rows("change", 2, f64::NAN, changes().map(|c| [c.value, c.omega]))?;
-    columns.one("change_after", changes().map(|c| c.after as i64))?;
-    columns.one("change_kind", changes().map(|c| c.kind as i64))?;
+    columns.rows("change", 2, f64::NAN, changes().map(|c| [c.value, c.omega]));
+    columns.one("change_after", changes().map(|c| c.after as i64));
+    columns.one("change_kind", changes().map(|c| c.kind as i64));
     let unstable = changes().map(|c| [c.unstable.0 as i64, c.unstable.1 as i64]);
-    columns.rows("change_unstable", 2, 0, unstable)?;
+    columns.rows("change_unstable", 2, 0, unstable);
     let end = |end| match end {
         End::Range => "range",
         End::Condition => "unbounded",
@@ -53,14 +50,14 @@ fn branch<'py>(
     };
     // How either side ended, and at which value.
     let ends = found.ends.iter().zip(found.end_values).map(|(one, value)| (end(*one), value));
-    columns.tell("ends", ends.collect::<Vec<_>>())?;
+    columns.tell("ends", ends.collect::<Vec<_>>());
     // r at which the stuck mode loses its damping, and its natural frequency.
-    columns.tell("onset", (found.onset, found.stuck_omega))?;
-    columns.tell("phase_dof", found.phase_dof)?;
-    columns.tell("jumps", found.jumps)?;
-    columns.tell("interrupted", found.interrupted)?;
-    columns.effort(&found.profile, ("iterations", 0))?;
-    columns.end()
+    columns.tell("onset", (found.onset, found.stuck_omega));
+    columns.tell("phase_dof", found.phase_dof);
+    columns.tell("jumps", found.jumps);
+    columns.tell("interrupted", found.interrupted);
+    columns.effort(&found.profile, ("iterations", 0));
+    columns
 }
 
 /// Negative damping: one matrix, or complex ones by nodal diameter of a travelling wave.
@@ -79,15 +76,15 @@ fn negative(given: &Bound<'_, PyAny>, proportional: bool) -> PyResult<NegativeDa
 /// Limit cycles of a mode along what is varied, the ratio if nothing is; `proportional` says that a
 /// law made the negative damping, one that couples none of the modes without contacts.
 #[pyfunction]
-pub fn limit_cycles<'py>(
-    py: Python<'py>,
+pub fn limit_cycles(
+    py: Python<'_>,
     problem: &Problem,
     negative_damping: &Bound<'_, PyAny>,
     proportional: bool,
     variation: Option<&Bound<'_, PyAny>>,
     settings: &Bound<'_, PyAny>,
     progress: Option<Py<PyAny>>,
-) -> PyResult<Bound<'py, PyAny>> {
+) -> PyResult<Found> {
     let negative = negative(negative_damping, proportional)?;
     let variation = variation.map_or(Ok(Variation::Ratio), settings::variation)?;
     let ratio = get(settings, "ratio")?;
@@ -105,11 +102,12 @@ pub fn limit_cycles<'py>(
         stability: get(settings, "stability")?,
         most: get(settings, "max_points")?,
     };
-    let model = Arc::clone(&problem.model);
-    let found = computed(py, progress, move |look| {
+    let [model, own] = [0; 2].map(|_| Arc::clone(&problem.model));
+    let cycles = found(py, progress, move |look| {
         orbit::limit_cycles(&model, &negative, &variation, ratio, &settings, look)
     })?;
-    branch(py, &found, &problem.model)
+    let told = |found: &orbit::LimitCycles| (found.interrupted, found.cycles.len());
+    Found::of(cycles, told, move |found| branch(&found, &own))
 }
 
 /// Floquet multipliers over a period of a motion given by its contact displacements `(points, H+1)`,

@@ -113,7 +113,7 @@ pub fn mistuning_study(
     let deliver = |py: Python<'_>, (index, rows, points): (usize, Vec<Row>, usize)| {
         deliver.call1(py, (index, rows, points)).map(drop)
     };
-    let (result, raised) = watched_parts(py, Some(progress), deliver, move |look, hand_over| {
+    let (left, raised) = watched_parts(py, Some(progress), deliver, move |look, hand_over| {
         let disks: Vec<&design::TunedDisk> = disks.iter().map(AsRef::as_ref).collect();
         let patterns: Vec<Pattern<'_>> =
             rows.iter().zip(which).map(|(deviations, disk)| Pattern { disk, deviations }).collect();
@@ -125,6 +125,6 @@ pub fn mistuning_study(
     })?;
     let complete = raised.is_none();
     raise_unless_interrupt(py, raised)?;
-    result.map_or(Ok(()), |ended| ended.map_err(refused))?;
+    left.ended().map_or(Ok(()), |ended| ended.map_err(refused))?;
     Ok(complete)
 }

@@ -68,16 +68,17 @@ pub fn exact_response<'py>(
     let (contacts, states) = (model.compliance().contacts(), model.states());
     let orbits = || found.points.iter();
     let responses = orbits().map(|orbit| &orbit.response);
-    let columns = Columns::new(py);
-    columns.responses(responses.clone(), observed, contacts)?;
-    columns.ranges(observed, orbits().map(|o| o.range.as_slice()))?;
-    columns.numbers("state", states, orbits().map(|o| o.state.as_slice()))?;
-    columns.multipliers(states, orbits().map(|o| (o.multipliers.as_slice(), o.neutral)))?;
-    columns.one("work", orbits().map(|o| o.work))?;
-    columns.one("viscous", orbits().map(|o| o.viscous))?;
-    columns.one("event_count", orbits().map(|o| o.events.len() as i64))?;
-    columns.events(orbits().flat_map(|o| &o.events))?;
-    curve(columns, responses, found.half_wave, found.interrupted, &found.profile)
+    let mut columns = Columns::default();
+    columns.responses(responses.clone(), observed, contacts);
+    columns.ranges(observed, orbits().map(|o| o.range.as_slice()));
+    columns.numbers("state", states, orbits().map(|o| o.state.as_slice()));
+    columns.multipliers(states, orbits().map(|o| (o.multipliers.as_slice(), o.neutral)));
+    columns.one("work", orbits().map(|o| o.work));
+    columns.one("viscous", orbits().map(|o| o.viscous));
+    columns.one("event_count", orbits().map(|o| o.events.len() as i64));
+    columns.events(orbits().flat_map(|o| &o.events));
+    curve(&mut columns, responses, found.half_wave, found.interrupted, &found.profile);
+    columns.end(py)
 }
 
 /// Frequency and exact amplitude at the true maximum of one DOF; `bracket` holds the lowest, the

@@ -2,6 +2,7 @@
 
 use crate::arrays::{coefficients, is_half_wave, series, Array1, Array2};
 use crate::columns::{stability_code, Columns};
+use crate::found::Found;
 use crate::problem::Problem;
 use crate::settings::{balance as balance_settings, get, measure};
 use crate::watch::{given_up, watched};
@@ -54,49 +55,65 @@ pub fn keeping<K: Send + Sync + 'static, T: Send + 'static>(
     rest(points).ok_or_else(given_up)
 }
 
+/// Points of a sweep, which it may take a while to bring into order.
+type Ordered = Box<dyn FnOnce() -> balance::Solution + Send>;
+
 /// Runs a sweep, over the frequencies `order` if they were given; Ctrl-C keeps what was solved.
-fn swept<'py>(
-    py: Python<'py>,
+fn swept(
+    py: Python<'_>,
     progress: Option<Py<PyAny>>,
     observed: usize,
     model: &Arc<Model>,
-    order: &[f64],
+    order: Vec<f64>,
     work: impl FnOnce(&Model, &Kept<Point>, &Progress<'_>) -> Result<balance::Solution, Error>
         + Send
         + 'static,
-) -> PyResult<Bound<'py, PyAny>> {
+) -> PyResult<Found> {
     let own = Arc::clone(model);
-    let found = keeping(
+    let (interrupted, computed, solution) = keeping(
         py,
         progress,
-        move |kept, look| work(&own, kept, look),
-        |mut points: Vec<Arc<Point>>| {
-            if !order.is_empty() {
-                without_gap(&mut points, order, |point| point.omega);
-            }
-            // The first point may have no solution.
-            let known = points.iter().find_map(|point| point.unknowns());
-            let half_wave = known.is_some_and(|known| known.harmonics().half_wave());
-            let profile = Profile::default();
-            let end = CurveEnd::Interrupted;
-            (!points.is_empty()).then_some(balance::Solution {
-                points,
-                half_wave,
-                interrupted: true,
-                end,
-                cut: 0,
-                profile,
-            })
+        move |kept, look| {
+            let found = work(&own, kept, look)?;
+            let computed = found.points.iter().filter(|point| is_computed(point)).count();
+            Ok((found.interrupted, Some(computed), Box::new(|| found) as Ordered))
+        },
+        move |points: Vec<Arc<Point>>| {
+            // A curve that was ended early has no gap: without its first point there is nothing.
+            let begun = |first: &f64| points.iter().any(|point| point.omega == *first);
+            let any = order.first().map_or(!points.is_empty(), begun);
+            any.then(|| (true, None, Box::new(move || kept_points(points, &order)) as Ordered))
         },
     )?;
-    let points = found.points.iter().map(AsRef::as_ref);
-    let columns = Columns::new(py);
-    columns.responses(points.clone(), observed, model.compliance().contacts())?;
-    columns.tell("end", end_name(found.end))?;
-    columns.tell("cut", found.cut)?;
-    let astray = points.clone().enumerate().filter(|(_, point)| point.astray);
-    columns.tell("astray", astray.map(|(position, _)| position).collect::<Vec<_>>())?;
-    curve(columns, points, found.half_wave, found.interrupted, &found.profile)
+    let contacts = model.compliance().contacts();
+    Found::new(interrupted, computed, move || {
+        let found = solution();
+        let points = found.points.iter().map(AsRef::as_ref);
+        let mut columns = Columns::default();
+        columns.responses(points.clone(), observed, contacts);
+        columns.tell("end", end_name(found.end));
+        columns.tell("cut", found.cut);
+        let astray = points.clone().enumerate().filter(|(_, point)| point.astray);
+        columns.tell("astray", astray.map(|(position, _)| position).collect::<Vec<_>>());
+        curve(&mut columns, points, found.half_wave, found.interrupted, &found.profile);
+        Ok(columns)
+    })
+}
+
+/// The curve of points that were kept as they were solved.
+fn kept_points(mut points: Vec<Arc<Point>>, order: &[f64]) -> balance::Solution {
+    if !order.is_empty() {
+        without_gap(&mut points, order, |point| point.omega);
+    }
+    // The first point may have no solution.
+    let known = points.iter().find_map(|point| point.unknowns());
+    let half_wave = known.is_some_and(|known| known.harmonics().half_wave());
+    let (end, profile) = (CurveEnd::Interrupted, Profile::default());
+    balance::Solution { points, half_wave, interrupted: true, end, cut: 0, profile }
+}
+
+fn is_computed(point: &Point) -> bool {
+    point.status != PointStatus::NotComputed
 }
 
 /// How a curve ended, as Python knows it.
@@ -109,24 +126,22 @@ fn end_name(end: CurveEnd) -> &'static str {
     }
 }
 
-/// A curve of some points, whose columns are written.
-pub fn curve<'a, 'py>(
-    columns: Columns<'py>,
+/// What curves of some points have beside the columns of every motion.
+pub fn curve<'a>(
+    columns: &mut Columns,
     points: impl Iterator<Item = &'a Point> + Clone,
     half_wave: bool,
     interrupted: bool,
     profile: &Profile,
-) -> PyResult<Bound<'py, PyAny>> {
-    let computed = points.clone().filter(|point| point.status != PointStatus::NotComputed);
-    columns.one("fold", points.clone().map(|point| point.fold))?;
-    columns.one("jump", points.clone().map(|point| point.jump))?;
-    columns.one("further", points.clone().map(|point| point.further))?;
-    columns.one("stability", points.clone().map(|point| stability_code(point.stable)))?;
-    columns.tell("half_wave", half_wave)?;
-    columns.tell("computed", computed.count())?;
-    columns.tell("interrupted", interrupted)?;
-    columns.effort(profile, ("iterations", points.map(|point| point.iterations).sum()))?;
-    columns.end()
+) {
+    columns.one("fold", points.clone().map(|point| point.fold));
+    columns.one("jump", points.clone().map(|point| point.jump));
+    columns.one("further", points.clone().map(|point| point.further));
+    columns.one("stability", points.clone().map(|point| stability_code(point.stable)));
+    columns.tell("half_wave", half_wave);
+    columns.tell("computed", points.clone().filter(|point| is_computed(point)).count());
+    columns.tell("interrupted", interrupted);
+    columns.effort(profile, ("iterations", points.map(|point| point.iterations).sum()));
 }
 
 /// Harmonic balance over a grid or a range of frequencies. `bounds` asks for those over the residual
@@ -145,7 +160,7 @@ pub fn forced_response<'py>(
     progress: Option<Py<PyAny>>,
     bounds: Option<bool>,
     start: Option<Array2<'py, Complex64>>,
-) -> PyResult<Bound<'py, PyAny>> {
+) -> PyResult<Found> {
     let start = start.map(|start| motion_of(problem, &start)).transpose()?.flatten();
     let stability =
         settings.getattr_opt("stability")?.map_or(Ok(false), |given| given.extract())?;
@@ -154,7 +169,7 @@ pub fn forced_response<'py>(
         Frequencies::Range(_) => Vec::new(),
         Frequencies::Grid(grid) => grid.clone(),
     };
-    swept(py, progress, observe.len(), &problem.model, &order, move |model, kept, look| {
+    swept(py, progress, observe.len(), &problem.model, order, move |model, kept, look| {
         let balances = Balances::new(model, settings, (&observe, &driving), kept)?;
         let mut found = match omega {
             Frequencies::Range(range) => sweep_range_in_pieces(&balances, range, look),
@@ -190,14 +205,14 @@ pub fn single_harmonic<'py>(
     observe: Vec<usize>,
     settings: &Bound<'_, PyAny>,
     progress: Option<Py<PyAny>>,
-) -> PyResult<Bound<'py, PyAny>> {
+) -> PyResult<Found> {
     let (estimate, max_iterations) = (get(settings, "estimate")?, get(settings, "max_iterations")?);
     let settings = Settings {
         harmonics: HarmonicChoice::Fixed(1),
         newton: NewtonSettings { max_iterations, ..NewtonSettings::default() },
         ..Settings::default()
     };
-    swept(py, progress, observe.len(), &problem.model, &[], move |model, kept, look| {
+    swept(py, progress, observe.len(), &problem.model, Vec::new(), move |model, kept, look| {
         let balance = ForcedBalance::new(model, settings, &observe)?.watched(look).keeping(kept);
         balance::single_harmonic(balance, &omega, estimate)
     })

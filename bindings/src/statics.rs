@@ -18,12 +18,12 @@ pub fn static_response<'py>(
     let model = Arc::clone(&problem.model);
     let found =
         computed(py, progress, move |look| balance::static_response(&model, &observe, look))?;
-    let columns = Columns::new(py);
-    columns.one("displacement", found.displacement)?;
-    columns.one("contact_displacement", found.contact_displacement)?;
-    columns.one("contact_force", found.contact_force)?;
-    columns.one("share", [found.share])?;
-    columns.one("status", [found.status as u8])?;
-    columns.tell("steps", found.steps)?;
-    columns.end()
+    let mut columns = Columns::default();
+    columns.one("displacement", found.displacement);
+    columns.one("contact_displacement", found.contact_displacement);
+    columns.one("contact_force", found.contact_force);
+    columns.one("share", [found.share]);
+    columns.one("status", [found.status as u8]);
+    columns.tell("steps", found.steps);
+    columns.end(py)
 }

@@ -6,7 +6,6 @@ use crate::settings::get;
 use crate::watch::computed;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::IntoPyDict as _;
 use std::sync::Arc;
 use stickslip_core::motion::{self, Halt, Scheme, TransientSettings};
 
@@ -42,24 +41,23 @@ pub fn transient<'py>(
     }
     let (model, trace) = (&problem.model, found.trace);
     let (instants, contacts) = (trace.time.len(), model.compliance().contacts());
-    let columns = Columns::new(py);
-    columns.shaped("displacement", [instants, observed], trace.displacement)?;
-    columns.shaped("velocity", [instants, observed], trace.velocity)?;
-    columns.shaped("contact_force", [instants, contacts], trace.force)?;
-    columns.shaped("contact_displacement", [instants, contacts], trace.contact_displacement)?;
-    columns.one("time", trace.time)?;
-    columns.numbers("poincare", model.states(), found.poincare.iter().map(Vec::as_slice))?;
+    let mut columns = Columns::default();
+    columns.shaped("displacement", [instants, observed], trace.displacement);
+    columns.shaped("velocity", [instants, observed], trace.velocity);
+    columns.shaped("contact_force", [instants, contacts], trace.force);
+    columns.shaped("contact_displacement", [instants, contacts], trace.contact_displacement);
+    columns.one("time", trace.time);
+    columns.numbers("poincare", model.states(), found.poincare.iter().map(Vec::as_slice));
     // A period that was cut has no change, and its range means nothing.
     let periods = found.change.len();
     let range = found.range.into_iter().take(periods * observed).flatten().collect();
-    columns.shaped("range", [periods, observed, 2], range)?;
-    columns.one("change", found.change)?;
-    columns.events(found.events.iter())?;
-    columns.tell("settled", found.settled)?;
-    columns.tell("unbounded", found.halt == Some(Halt::Unbounded))?;
-    columns.tell("interrupted", found.interrupted)?;
-    columns.tell("timings", [("total", found.total.as_secs_f64())].into_py_dict(py)?)?;
-    let counters = [("steps", found.steps), ("events", found.events_met)];
-    columns.tell("counters", counters.into_py_dict(py)?)?;
-    columns.end()
+    columns.shaped("range", [periods, observed, 2], range);
+    columns.one("change", found.change);
+    columns.events(found.events.iter());
+    columns.tell("settled", found.settled);
+    columns.tell("unbounded", found.halt == Some(Halt::Unbounded));
+    columns.tell("interrupted", found.interrupted);
+    columns.tell_by_name("timings", [("total", found.total.as_secs_f64())]);
+    columns.tell_by_name("counters", [("steps", found.steps), ("events", found.events_met)]);
+    columns.end(py)
 }

@@ -10,13 +10,13 @@ use pyo3::prelude::*;
 use std::any::Any;
 use std::convert::Infallible;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::mpsc::{sync_channel, RecvTimeoutError};
+use std::sync::mpsc::{sync_channel, Receiver, RecvTimeoutError};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use stickslip_core::Error;
 
 /// Time between two looks at Python: often enough for Ctrl-C, rare enough to cost nothing.
-const LOOK: Duration = Duration::from_millis(50);
+pub const LOOK: Duration = Duration::from_millis(50);
 /// Time that work has to hand over what it has computed once it was told to end: with the look
 /// before it and the result to build behind it, Ctrl-C is heeded within a second.
 const PATIENCE: Duration = Duration::from_millis(500);
@@ -32,9 +32,26 @@ struct Line {
 }
 
 /// What the working thread hands over.
-enum Word<M, T> {
+pub enum Word<M, T> {
     Part(M),
     End(T),
+}
+
+/// What is left of work when nobody watches it any more.
+pub enum Left<M, T> {
+    /// What it gives.
+    Ended(T),
+    /// It was left to itself: where its words come from, and the share that was done.
+    Alone(Receiver<Word<M, T>>, f64),
+}
+
+impl<M, T> Left<M, T> {
+    pub fn ended(self) -> Option<T> {
+        match self {
+            Self::Ended(value) => Some(value),
+            Self::Alone(..) => None,
+        }
+    }
 }
 
 /// Runs `work` without the interpreter, looking at Python from time to time. Ctrl-C ends it with
@@ -44,9 +61,29 @@ pub fn watched<T: Send + 'static>(
     progress: Option<Py<PyAny>>,
     work: impl FnOnce(&dyn Fn(f64) -> bool) -> Result<T, Error> + Send + 'static,
 ) -> PyResult<Option<T>> {
-    let (value, raised) = watched_parts(py, progress, nothing, |look, _| work(look))?;
+    let (left, raised) = watched_parts(py, progress, nothing, |look, _| work(look))?;
     raise_unless_interrupt(py, raised)?;
-    value.transpose().map_err(refused)
+    left.ended().transpose().map_err(refused)
+}
+
+/// [`watched`] work of which a part is worth waiting for, once it has begun: what it has found, or else what
+/// hands that over when its present step has ended.
+pub fn found<T: Send + 'static>(
+    py: Python<'_>,
+    progress: Option<Py<PyAny>>,
+    work: impl FnOnce(&dyn Fn(f64) -> bool) -> Result<T, Error> + Send + 'static,
+) -> PyResult<Result<T, impl FnOnce() -> PyResult<T> + Send + 'static>> {
+    let (left, raised) = watched_parts(py, progress, nothing, |look, _| work(look))?;
+    raise_unless_interrupt(py, raised)?;
+    match left {
+        Left::Ended(value) => value.map(Ok).map_err(refused),
+        Left::Alone(words, share) if share > 0.0 => Ok(Err(move || match words.recv() {
+            Ok(Word::End(value)) => value.map_err(refused),
+            Ok(Word::Part(never)) => match never {},
+            Err(_) => Err(given_up()),
+        })),
+        Left::Alone(..) => Err(given_up()),
+    }
 }
 
 /// [`watched`] work that keeps nothing before its end.
@@ -72,9 +109,9 @@ pub fn followed<T: Send + 'static>(
     progress: Option<Py<PyAny>>,
     work: impl FnOnce(&dyn Fn(f64) -> bool) -> Result<T, Error> + Send + 'static,
 ) -> PyResult<T> {
-    let (value, raised) = watched_parts(py, progress, nothing, |look, _| work(look))?;
+    let (left, raised) = watched_parts(py, progress, nothing, |look, _| work(look))?;
     raised.map_or(Ok(()), Err)?;
-    value.ok_or_else(given_up)?.map_err(refused)
+    left.ended().ok_or_else(given_up)?.map_err(refused)
 }
 
 fn nothing(_: Python<'_>, never: Infallible) -> PyResult<()> {
@@ -82,15 +119,15 @@ fn nothing(_: Python<'_>, never: Infallible) -> PyResult<()> {
 }
 
 /// Runs `work` that hands over parts of its result, each of which `deliver` takes, and returns what
-/// Python has raised meanwhile beside its value.
+/// Python has raised meanwhile beside what is left of it.
 pub fn watched_parts<M: Send + 'static, T: Send + 'static>(
     py: Python<'_>,
     progress: Option<Py<PyAny>>,
     mut deliver: impl FnMut(Python<'_>, M) -> PyResult<()> + Send,
     work: impl FnOnce(&dyn Fn(f64) -> bool, &dyn Fn(M) -> bool) -> T + Send + 'static,
-) -> PyResult<(Option<T>, Option<PyErr>)> {
+) -> PyResult<(Left<M, T>, Option<PyErr>)> {
     let line = Arc::new(Line::default());
-    // Nothing is in flight: nobody listens to work that was left to itself.
+    // Nothing is in flight: nobody need listen to work that was left to itself.
     let (sender, receiver) = sync_channel(0);
     let own = Arc::clone(&line);
     let worker = std::thread::Builder::new().stack_size(STACK).spawn(move || {
@@ -102,38 +139,39 @@ pub fn watched_parts<M: Send + 'static, T: Send + 'static>(
         let _ = sender.send(Word::End(value));
     })?;
     py.detach(move || {
+        let share = || f64::from_bits(line.share.load(Ordering::Relaxed));
+        let alone = |receiver| Left::Alone(receiver, share());
         let mut ended: Option<(Instant, PyErr)> = None;
         let mut last = Instant::now();
-        let value = loop {
+        let left = loop {
             let mut asked = Ok(());
             match receiver.recv_timeout(LOOK) {
-                Ok(Word::End(value)) => break Some(value),
+                Ok(Word::End(value)) => break Left::Ended(value),
                 Ok(Word::Part(part)) if ended.is_none() => {
                     asked = Python::attach(|py| deliver(py, part));
                 }
                 Ok(Word::Part(_)) | Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => match worker.join() {
                     Err(panic) => return Err(defect(panic.as_ref())),
-                    Ok(()) => break None,
+                    Ok(()) => break alone(receiver),
                 },
             }
             match &ended {
                 None => {
                     if asked.is_ok() && last.elapsed() >= LOOK {
                         last = Instant::now();
-                        let share = f64::from_bits(line.share.load(Ordering::Relaxed));
-                        asked = look(progress.as_ref(), share);
+                        asked = look(progress.as_ref(), share());
                     }
                     if let Err(error) = asked {
                         line.stop.store(true, Ordering::Relaxed);
                         ended = Some((Instant::now(), error));
                     }
                 }
-                Some((since, _)) if since.elapsed() > PATIENCE => break None,
+                Some((since, _)) if since.elapsed() > PATIENCE => break alone(receiver),
                 Some(_) => {}
             }
         };
-        Ok((value, ended.map(|(_, error)| error)))
+        Ok((left, ended.map(|(_, error)| error)))
     })
 }
 
@@ -151,7 +189,7 @@ pub fn given_up() -> PyErr {
 }
 
 /// Tells how far the work is, and asks for signals.
-fn look(progress: Option<&Py<PyAny>>, share: f64) -> PyResult<()> {
+pub fn look(progress: Option<&Py<PyAny>>, share: f64) -> PyResult<()> {
     Python::attach(|py| {
         if let Some(call) = progress {
             call.call1(py, (share,))?;

@@ -1,7 +1,7 @@
 """The compiled mathematics: arrays in, arrays out."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any, TypedDict
+from typing import Any, Generic, TypedDict, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,8 @@ Contact = tuple[Law, Float, Parameters]
 SectorContact = tuple[Law, Float, Float, Parameters]
 Residual = str | float | None
 Progress = Callable[[float], None] | None
+
+_Columns = TypeVar("_Columns")
 
 __version__: str
 
@@ -92,6 +94,11 @@ class Solution:
     timings: dict[str, float]
     counters: dict[str, int]
 
+class Found(Generic[_Columns]):
+    interrupted: bool
+    computed: int | None
+    def solution(self, look: Progress) -> _Columns: ...
+
 def forced_response(
     problem: Problem,
     omega: Float | tuple[float, float],
@@ -101,7 +108,7 @@ def forced_response(
     progress: Progress,
     bounds: bool | None = None,
     start: Complex | None = None,
-) -> Solution: ...
+) -> Found[Solution]: ...
 def amplitude(coefficients: Complex, measure: str) -> Float: ...
 def contact_force(
     problem: Problem,
@@ -124,7 +131,7 @@ def single_harmonic(
     observe: NDArray[np.int64],
     settings: SingleHarmonicKeys,
     progress: Progress,
-) -> Solution: ...
+) -> Found[Solution]: ...
 
 Summit = tuple[float, float, int, int, int, float, bool]
 
@@ -281,7 +288,7 @@ class NonlinearMode:
 
 def nonlinear_mode(
     problem: Problem, settings: ModeSettings, corner: tuple[int, float] | None, progress: Progress
-) -> NonlinearMode: ...
+) -> Found[NonlinearMode]: ...
 def period_multipliers(
     problem: Problem,
     circulatory: NDArray[np.float64],
@@ -307,4 +314,4 @@ def limit_cycles(
     variation: Varied | None,
     settings: CycleSettings,
     progress: Progress,
-) -> LimitCycles: ...
+) -> Found[LimitCycles]: ...

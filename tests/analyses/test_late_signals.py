@@ -58,6 +58,11 @@ ANALYSES = {
         model, slip_force=[0.5, 1.0], dof="a", omega=(25.0, 40.0)
     ),
     "static_response": lambda model: ss.static_response(model),
+    "single_harmonic": lambda model: ss.single_harmonic(model, [30.0, 33.0]),
+    "limit_cycles": lambda model: ss.limit_cycles(model, -np.eye(2), mode=0, harmonics=3),
+    "nonlinear_mode": lambda model: ss.nonlinear_modes(
+        model, mode=0, amplitude=[1e-3, 1e-2], harmonics=3, residual="bounds"
+    ),
 }
 
 

@@ -107,7 +107,7 @@ def begun_with(
     warn_of_effort(settings, model, dofs)
     with Run("forced response", progress, model) as run:
         with refusals(model):
-            solution = _core.forced_response(
+            found = _core.forced_response(
                 model.problem,
                 grid,
                 columns_of(dofs, model),
@@ -117,17 +117,21 @@ def begun_with(
                 is_unique(model) if bounded else None,
                 start,
             )
-        arrays = arrays_of(solution, model)
-        result = ForcedResponse.of(
-            solution,
-            model=model,
-            settings=kept,
-            dofs=dofs,
-            arrays=arrays,
-            diagnostics=(
-                *balance_assumptions(model, kept, dofs, arrays, solution, asked),
-                *branch_assumptions(model, kept, arrays, solution),
-            ),
-        )
-        of_all = "" if asked is None else f" of {asked}"
-        return run.ended(with_free_flight(result), f"{solution.computed}{of_all} points")
+
+        def result(look: Progress) -> ForcedResponse:
+            solution = found.solution(look)
+            arrays = arrays_of(solution, model)
+            response = ForcedResponse.of(
+                solution,
+                model=model,
+                settings=kept,
+                dofs=dofs,
+                arrays=arrays,
+                diagnostics=(
+                    *balance_assumptions(model, kept, dofs, arrays, solution, asked),
+                    *branch_assumptions(model, kept, arrays, solution),
+                ),
+            )
+            return with_free_flight(response)
+
+        return run.found(found, " points" if asked is None else f" of {asked} points", result)

@@ -76,18 +76,22 @@ def limit_cycles(
     require_lowest(model, kept.mode)
     require_onset(model)
     with Run("limit cycles", progress, model) as run:
-        solution = negative.cycles(model, kept, run)
-        arrays = CycleArrays.of(solution, negative_damping=negative.matrix)
-        result = LimitCycles.of(
-            solution,
-            model=model,
-            dofs=model.structure.dofs,
-            settings=kept,
-            arrays=arrays,
-            counters={**solution.counters, "jumps": solution.jumps},
-            diagnostics=cycle_assumptions(model, kept, arrays, solution),
-        )
-        return run.ended(result, f"{result.ratio.size} points")
+        found = negative.cycles(model, kept, run)
+
+        def result(look: Progress) -> LimitCycles:
+            solution = found.solution(look)
+            arrays = CycleArrays.of(solution, negative_damping=negative.matrix)
+            return LimitCycles.of(
+                solution,
+                model=model,
+                dofs=model.structure.dofs,
+                settings=kept,
+                arrays=arrays,
+                counters={**solution.counters, "jumps": solution.jumps},
+                diagnostics=cycle_assumptions(model, kept, arrays, solution),
+            )
+
+        return run.found(found, " points", result)
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,7 +112,7 @@ class NegativeDamping:
 
     def cycles(
         self, model: Model, settings: CycleSettings, progress: Progress
-    ) -> _core.LimitCycles:
+    ) -> _core.Found[_core.LimitCycles]:
         """Return what the core makes of checked settings."""
         varied = None if settings.variation is None else settings.variation.varied(model)
         with refusals(model):

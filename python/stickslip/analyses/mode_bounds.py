@@ -66,15 +66,15 @@ def mode_bounds(
 ) -> ModeBounds:
     """Return the bounds that belong to a mode, at the amplitudes of its way up.
 
-    Nothing but not-a-number if the settings do not ask for them.
+    Nothing but not-a-number if the settings do not ask for them, or the mode was interrupted.
     """
     amplitude = solution.columns["amplitude"]
     nominal = np.stack([solution.columns[name] for name in ("omega", "damping_ratio")])
     bounds = np.full((2, amplitude.size, 2), np.nan)
     solved = np.isfinite(nominal[0])
     rising = np.flatnonzero(solved & (amplitude >= np.maximum.accumulate(amplitude)))
-    if not settings.bounds or not rising.size:
-        return ModeBounds(bounds[0], bounds[1], 0, 0, interrupted=False)
+    if not settings.bounds or not rising.size or solution.interrupted:
+        return ModeBounds(bounds[0], bounds[1], 0, 0, interrupted=solution.interrupted)
     known = np.unique(amplitude[rising])
     place = np.searchsorted(known, amplitude[rising])
     listed = settings.model_copy(update={"amplitudes": tuple(known.tolist()), "whole": False})
@@ -82,12 +82,12 @@ def mode_bounds(
     seen, interrupted, tried, lost = [nominal[:, rising]], False, 0, 0
     for corner in product(range(2 ** min(points, _CORNERS)), _SHARES):
         pushed = _core.nonlinear_mode(model.problem, listed, corner, run)
-        columns = pushed.columns["omega"], pushed.columns["damping_ratio"]
-        seen.append(np.stack(columns)[:, place])
-        tried, interrupted = tried + 1, pushed.interrupted
-        lost += bool(np.isnan(seen[-1]).any())
-        if interrupted:
+        if interrupted := pushed.interrupted:
             break
+        columns = pushed.solution(run).columns
+        seen.append(np.stack([columns[name] for name in ("omega", "damping_ratio")])[:, place])
+        tried += 1
+        lost += bool(np.isnan(seen[-1]).any())
     bounds[:, rising, 0] = np.nanmin(seen, axis=0)
     bounds[:, rising, 1] = np.nanmax(seen, axis=0)
     return ModeBounds(bounds[0], bounds[1], tried, lost, interrupted=interrupted)

@@ -89,24 +89,35 @@ def nonlinear_modes(
     )
     with Run("nonlinear mode", progress, model) as run:
         with refusals(model):
-            solution = _core.nonlinear_mode(model.problem, kept, None, run)
-            bounds = mode_bounds(model, kept, solution, run)
-            slipping = _slipping(model, kept, solution, run)
-        arrays = ModeArrays.of(solution, omega_bounds=bounds.omega, damping_bounds=bounds.damping)
-        result = NonlinearModes.of(
-            solution,
-            model=model,
-            dofs=model.structure.dofs,
-            settings=kept,
-            arrays=arrays,
-            interrupted=solution.interrupted or bounds.interrupted,
-            diagnostics=(
-                *_assumptions(kept, arrays, solution, slipping),
-                *bounds.told,
-                *present((*structure_doubts(model), few_modes(model, arrays.omega, forced=False))),
-            ),
-        )
-        return run.ended(result, f"{result.omega.size} amplitudes")
+            found = _core.nonlinear_mode(model.problem, kept, None, run)
+
+        def result(look: Progress) -> NonlinearModes:
+            solution = found.solution(look)
+            with refusals(model):
+                bounds = mode_bounds(model, kept, solution, run)
+                slipping = _slipping(model, kept, solution, run)
+            arrays = ModeArrays.of(
+                solution, omega_bounds=bounds.omega, damping_bounds=bounds.damping
+            )
+            return NonlinearModes.of(
+                solution,
+                model=model,
+                dofs=model.structure.dofs,
+                settings=kept,
+                arrays=arrays,
+                interrupted=solution.interrupted or bounds.interrupted,
+                diagnostics=(
+                    *_assumptions(kept, arrays, solution, slipping),
+                    *bounds.told,
+                    *present(
+                        (*structure_doubts(model), few_modes(model, arrays.omega, forced=False))
+                    ),
+                ),
+            )
+
+        if found.interrupted:
+            return run.found(found, " amplitudes", result)
+        return run.ended(result(run), f"{found.computed} amplitudes")
 
 
 def _of_diameter(model: Model, diameter: int | None) -> Model:
@@ -145,14 +156,17 @@ def _slipping(
     amplitude, tells how far away that is; a free structure and a sector of a wave have none.
     """
     end, reached = solution.end
-    begun = end != "stalled" or np.isfinite(reached)
+    begun = end != "stalled" or np.isfinite(reached) or solution.interrupted
     if begun or settings.method != "periodic" or model.travels or model.problem.static_singular:
         return None
     update = {"method": "quasi-static", "amplitudes": settings.amplitudes[:1], "whole": False}
     static = _core.nonlinear_mode(
         model.problem, settings.model_copy(update=update | {"bounds": False}), None, run
     )
-    omega, linear = float(static.columns["omega"][0]), float(solution.columns["linear"][0])
+    if static.interrupted:
+        raise KeyboardInterrupt
+    columns = static.solution(run).columns
+    omega, linear = float(columns["omega"][0]), float(solution.columns["linear"][0])
     if not abs(omega - linear) > _SOFTER * linear:
         return None
     several = len(model.structure) > 1

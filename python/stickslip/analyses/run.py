@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from time import monotonic
-from typing import TypeAlias, TypeVar
+from typing import Any, TypeAlias, TypeVar
 
+from stickslip import _core
 from stickslip.errors import ModelError
-from stickslip.interruption import Interruption, stopped
+from stickslip.interruption import Interruption, Making, stopped, stopped_before
 from stickslip.model import Model
 from stickslip.model.pace import refusal
 from stickslip.results.result import Result
@@ -54,6 +55,16 @@ class Run(Interruption):
         if result.interrupted:
             raise stopped(self._what, count, result, advice)
         return self.completed(result, self._what)
+
+    def found(self, found: _core.Found[Any], count: str, make: Making[_Kind]) -> _Kind:
+        """Return what is made of a solution of the core, or raise `Interrupted`, which makes it.
+
+        `count` says of how many points it can be.
+        """
+        if found.interrupted:
+            computed = "some" if found.computed is None else found.computed
+            raise stopped_before(self._what, f"{computed}{count}", make)
+        return self.made(make, self._what)
 
 
 @contextmanager

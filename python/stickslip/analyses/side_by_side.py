@@ -99,14 +99,14 @@ def in_turn(
         pool.shutdown(cancel_futures=True)
 
 
-def _kept(waiting: Iterable[Future[_Kind]], first: int) -> Iterator[tuple[int, object]]:
+def _kept(waiting: Iterable[Future[_Kind]], first: int) -> Iterator[tuple[int, Interrupted]]:
     """Yield what parts have come to that were told to end, by their number."""
     for number, part in enumerate(waiting, first):
         error = part.exception()
         if error is None:
-            yield number, part.result()
+            yield number, Interrupted("", part.result())
         elif isinstance(error, Interrupted):
-            yield number, error.result
+            yield number, error
 
 
 def _alone(
@@ -147,10 +147,9 @@ def whole(compute: Callable[[], Result]) -> Result:
     try:
         return compute()
     except Interrupted as stop:
-        result = cast("Result", stop.result)
-        if result.interrupted or not getattr(_WITHIN, "part", False):
+        if not stop.complete or not getattr(_WITHIN, "part", False):
             raise
-        return result
+        return cast("Result", stop.result)
 
 
 def has_own_laws(model: Model) -> bool:

@@ -13,7 +13,6 @@ from stickslip.errors import ModelError
 from stickslip.memory import require_memory
 from stickslip.model import Model
 from stickslip.results import ForcedResponse
-from stickslip.results.status import Status
 from stickslip.settings.balance import ForcedSettings
 from stickslip.settings.orbits import SingleHarmonicKeys
 from stickslip.settings.settings import configured
@@ -68,22 +67,25 @@ def single_harmonic(
     require_memory(grid.size, 1, len(dofs), points_of(model))
     with Run("single-harmonic response", progress, model) as run:
         with refusals(model):
-            solution = _core.single_harmonic(
+            found = _core.single_harmonic(
                 model.problem, grid, columns_of(dofs, model), settings, run
             )
-        arrays = arrays_of(solution, model)
-        diagnostics = balance_assumptions(
-            model, kept, dofs, arrays, solution, grid.size, single=True
-        )
-        if not settings.estimate:
-            diagnostics = (*diagnostics, told("no-error-estimate"))
-        result = ForcedResponse.of(
-            solution,
-            model=model,
-            settings=kept,
-            dofs=dofs,
-            arrays=arrays,
-            diagnostics=diagnostics,
-        )
-        done = int((arrays.status != Status.NOT_COMPUTED.code).sum())
-        return run.ended(result, f"{done} of {grid.size} points")
+
+        def result(look: Progress) -> ForcedResponse:
+            solution = found.solution(look)
+            arrays = arrays_of(solution, model)
+            diagnostics = balance_assumptions(
+                model, kept, dofs, arrays, solution, grid.size, single=True
+            )
+            if not settings.estimate:
+                diagnostics = (*diagnostics, told("no-error-estimate"))
+            return ForcedResponse.of(
+                solution,
+                model=model,
+                settings=kept,
+                dofs=dofs,
+                arrays=arrays,
+                diagnostics=diagnostics,
+            )
+
+        return run.found(found, f" of {grid.size} points", result)

@@ -69,8 +69,8 @@ def stability_map(
     values = np.unique(getattr(settings, name))
     total = len(values)
     variation = variation_of(model, name, settings)
-    branch = settings.part(LimitSettings)
-    cycles = CycleSettings.of(**branch)
+    given = settings.part(LimitSettings)
+    cycles = CycleSettings.of(**given)
     require_lowest(model, cycles.mode)
     rows: list[tuple[float, float, float]] = []
     notes: list[Diagnostic] = []
@@ -80,12 +80,12 @@ def stability_map(
     def limit_of(value: float, progress: Progress) -> tuple[float, float, float] | str | None:
         """Return ratio, frequency and stable ratio, why there are none, or None if interrupted."""
         try:
-            solution = negative.cycles(variation.apply(model, value), cycles, progress)
+            branch = negative.cycles(variation.apply(model, value), cycles, progress)
         except ModelError as error:
             return str(error)
-        if solution.interrupted:
+        if branch.interrupted:
             return None
-        arrays = CycleArrays.of(solution, negative_damping=negative.matrix)
+        arrays = CycleArrays.of(branch.solution(progress), negative_damping=negative.matrix)
         return (*arrays.turn, _stable_limit(arrays))
 
     with Run("stability map", progress) as run:
@@ -114,7 +114,7 @@ def stability_map(
         result = StabilityMap(
             model=model,
             dofs=model.structure.dofs,
-            settings=MapSettings.of(variation=variation, **branch),
+            settings=MapSettings.of(variation=variation, **given),
             arrays=MapArrays(
                 value=values[:done],
                 limit=limit,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 from operator import methodcaller
-from typing import TypeAlias
+from typing import TypeAlias, cast
 
 import numpy as np
 
@@ -97,14 +97,17 @@ def swept(
         try:
             results.extend(in_turn(parts, run, alone=alone, within=run.at_once))
         except KeyboardInterrupt as stop:
-            late = getattr(stop, "result", None)
-            if isinstance(late, Result) and not late.interrupted:
-                results.append(late)
-            if not results:
+            late = [stop] if isinstance(stop, Interrupted) and stop.complete else []
+            count = len(results) + len(late)
+            if not count:
                 raise
-            done = Sweep.of(kept, tuple(results), results[0].model, interrupted=True)
-            message = f"sweep interrupted: {len(results)} of {len(parts)} values are complete"
-            raise Interrupted(message, done) from stop
+
+            def done() -> Sweep:
+                found = (*results, *(cast("Result", one.result) for one in late))
+                return Sweep.of(kept, found, found[0].model, interrupted=True)
+
+            message = f"sweep interrupted: {count} of {len(parts)} values are complete"
+            raise Interrupted.later(message, done, complete=False) from stop
         base = models if isinstance(models, Model) else results[0].model
         return run.completed(Sweep.of(kept, tuple(results), base), "sweep")
 

@@ -167,13 +167,14 @@ def _compute(study: Study, out: Path, clock: Clock, *, quiet: bool) -> list[Resu
             # Before, a signal is heeded where the next curve is kept as far as it went.
             watch.heed()
         except KeyboardInterrupt as stop:
-            kept: list[tuple[int, Result]] = list(getattr(stop, "beside", ()))
+            kept: list[tuple[int, Interrupted]] = list(getattr(stop, "beside", ()))
             if isinstance(stop, Interrupted):
-                kept.insert(0, (len(computed), cast("Result", stop.result)))
+                kept.insert(0, (len(computed), stop))
             if kept:
                 complain("interrupted", "saving what was computed")
             parts = []
-            for number, result in kept:
+            for number, ended in kept:
+                result = cast("Result", ended.result)
                 # a part under another name, so that a complete curve of an earlier run is not lost
                 file = _file(out, cases[number], "-partial" if result.interrupted else "")
                 save(result, file)

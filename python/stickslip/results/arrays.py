@@ -178,16 +178,22 @@ class Arrays(PeriodicArrays):
             series = values[name]
             if series.shape[1] == 1:
                 series = np.pad(series, ((0, 0), (0, 1), (0, 0)))
-            series[missing] = complex(np.nan, np.nan)
-            values[name] = series
+            values[name] = _blanked(series, missing, complex(np.nan, np.nan))
         for name in ("error_estimate", "sampling_error", "slip_fraction", "dissipation"):
-            values[name][~_solved(values["status"])] = np.nan
+            values[name] = _blanked(values[name], ~_solved(values["status"]), np.nan)
         return super().of(solution, **values)
 
     @cached_property
     def solved(self) -> Bool:
         """(n,) Whether the balance equations hold at the point."""
         return _solved(self.status)
+
+
+def _blanked(values: NDArray[Any], missing: Bool, blank: complex) -> NDArray[Any]:
+    """Blank rows in place; they are, if Ctrl-C met a result that had made its arrays constant."""
+    if values.flags.writeable:
+        values[missing] = blank
+    return values
 
 
 def period_of(series: Complex, samples: int) -> Float:

@@ -175,7 +175,7 @@ class Sensitivities(ContactMotion):
             BalanceSettings.of(**self.settings.part(BalanceSettings)),
             None,
         )
-        return Arrays.of(there)
+        return Arrays.of(there.solution(None))
 
     def _of_corner(
         self, peak: Peak, slopes: Float, dof: str, causes: list[Cause], measure: Measure

@@ -42,6 +42,9 @@ const BACK: f64 = 10.0;
 /// more for a few hard places.
 const EVALUATIONS: [usize; 2] = [40, 1500];
 
+/// Least share of the progress from the first point on: there is something to keep.
+const BEGUN: f64 = 1e-3;
+
 /// A branch on its way.
 pub(super) struct Walk<'a> {
     settings: &'a ModeSettings,
@@ -171,8 +174,9 @@ impl<'a> Walk<'a> {
             if taken.max(self.points.len()) >= self.settings.most {
                 return ModeEnd::Points;
             }
-            let share = ((from - low) / (high - low).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-            self.equations().share.set(share);
+            let share = (from - low) / (high - low).max(f64::MIN_POSITIVE);
+            let least = if self.points.is_empty() { 0.0 } else { BEGUN };
+            self.equations().share.set(share.clamp(least, 1.0));
             match walk.advance(self.equations()) {
                 Advance::Point => {}
                 Advance::Stalled => return ModeEnd::Stalled,
