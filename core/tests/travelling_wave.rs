@@ -127,6 +127,22 @@ fn sectors(factors: &[f64], engine_order: usize, between: Option<(f64, f64)>) ->
     .unwrap()
 }
 
+/// Friction between neighbours moves no blade at harmonics that come to all sectors at once: to 5 of them under engine
+/// order 2 every fifth.
+#[test]
+fn contacts_between_sectors_do_not_feel_harmonics_that_come_to_all_at_once() {
+    let factors = [1.0, 1.01, 0.98, 1.02, 1.0];
+    let silent = |model: &Model| -> Vec<usize> {
+        (1..11).filter(|&k| model.compliance().is_silent(k)).collect()
+    };
+    let between = Some((1e5, 5.0));
+    assert_eq!(silent(&ring(5, 2, between)), [5, 10]);
+    assert_eq!(silent(&sectors(&factors, 2, between)), [5, 10]);
+    assert_eq!(silent(&ring(5, 2, None)), []);
+    assert_eq!(silent(&sectors(&factors, 2, None)), []);
+    assert_eq!(silent(&assembly(5, 2, between)), []);
+}
+
 #[test]
 fn a_ring_of_sectors_is_the_whole_disk() {
     for (between, engine_order) in [(None, 2), (Some((2e5, 8.0)), 5)] {

@@ -71,6 +71,35 @@ def test_loads_of_one_higher_harmonic_are_answered_at_its_multiples(harmonic: in
         assert automatic.amplitude(dof) == pytest.approx(exact.amplitude(dof), rel=3e-3)
 
 
+@pytest.mark.parametrize("mistuned", [False, True])
+@pytest.mark.parametrize("harmonics", [3, 7])
+def test_harmonics_that_contacts_between_sectors_do_not_feel_tell_no_errors(
+    mistuned: bool, harmonics: int
+) -> None:
+    # Harmonic 5 of engine order 2 comes to all of 5 sectors at once, so does 9 of 3 to 9 sectors.
+    sectors, order = (5, 2) if harmonics == 3 else (9, 3)
+    stiffness = in_a_row(np.array([2e4, 1.5e4, 0.0]))
+    blade = ss.Structure(np.eye(2), stiffness, ss.ModalDamping(3e-3), ["a", "b"])
+    disk = ss.BladedDisk(
+        blade,
+        sectors,
+        [ss.Coupling("a", stiffness=2e3)],
+        [ss.Jenkins("b", "next.b", stiffness=1e4, slip_force=0.5)],
+        [ss.Force("b", 1.0)],
+        engine_order=order,
+    )
+    pattern = ss.mistuning_pattern(sectors, 0.01, seed=1)
+    model = disk.mistuned(pattern) if mistuned else disk
+    omega = np.linspace(0.95, 1.05, 5) * ss.natural_frequencies(disk, nodal_diameter=order)[0]
+    frf, fine = (ss.forced_response(model, omega, h) for h in (harmonics, 63))
+    for dof in frf.dofs:
+        change = fine.coefficients(dof).copy()
+        change[:, : harmonics + 1] -= frf.coefficients(dof)
+        error = np.abs(change).max(axis=1)
+        assert error.max() > 1e-6 * fine.amplitude(dof).max()
+        assert (error <= 5.0 * frf.error_estimate(dof)).all(), dof
+
+
 def exact_size(exact: ss.ExactResponse):
     return lambda dof: np.nanmax(exact.amplitude(dof))
 

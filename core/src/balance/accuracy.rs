@@ -33,6 +33,7 @@ const SHARE: f64 = 0.5;
 const FARTHEST: (usize, usize) = (2, 60);
 /// … and only as far as its effort stays below that of the solution, though at least so far, in
 /// multiples of the harmonics that loads have in common: friction answers loads at 3ω at 9ω, 15ω, …
+/// Where these come to all sectors at once, and contacts between sectors do not feel them, the next ones tell.
 const LEAST: usize = 2;
 
 /// Newton steps that the solution of a point with slip takes: four to seven, the last ones without a
@@ -117,7 +118,10 @@ impl Extension {
         let (highest, compliance) = (kept.highest(), effort.compliance());
         let reach = PAST_LAST_MODE * compliance.highest_frequency() / omega;
         let least = LEAST * common_divisor(&compliance.forced_harmonics());
-        let beyond = highest + least.max((SHARE * highest as f64) as usize);
+        // Even harmonics, where there are any, are between.
+        let silent = kept.half_wave() && compliance.is_silent(highest + least);
+        let first = highest + if silent { 2 * least } else { least };
+        let beyond = first.max(highest + (SHARE * highest as f64) as usize);
         let farthest = FARTHEST.0 * highest + FARTHEST.1;
         let wanted = (reach.min(farthest as f64) as usize).max(beyond);
         let (orders, steps) = (solution.orders(highest), OF_SOLUTION * solution.step(highest));
@@ -131,11 +135,11 @@ impl Extension {
         let budget =
             |order: usize| allowance(effort.allowed([highest, order]), steps, orders).min(credit);
         let affordable = |order: &usize| account(*order).of(true) <= budget(*order);
-        let candidates = (highest + least..=wanted).step_by(least);
+        let candidates = (first..=wanted).step_by(least);
         let farthest = candidates.take_while(affordable).last();
-        let order = farthest.unwrap_or(highest + least);
+        let order = farthest.unwrap_or(first);
         // Friction forces have kinks: their harmonics fall with the square of the order.
-        let sum = |to: usize| 1.0 / (highest + least) as f64 - 1.0 / (to + least) as f64;
+        let sum = |to: usize| 1.0 / first as f64 - 1.0 / (to + least) as f64;
         let unseen = sum(wanted.max(order)) / sum(order);
         let steps = if farthest.is_some() { Steps::Two } else { Steps::One };
         // Each of two steps may take half of what is left.

@@ -165,6 +165,15 @@ fn wave_rows(own: MatRef<'_, f64>, next: MatRef<'_, f64>, delta: f64) -> Mat<c64
     Mat::from_fn(own.nrows(), own.ncols(), |i, j| own[(i, j)] + c64::new(cos, sin) * next[(i, j)])
 }
 
+/// Whether some contact lies between the same points of neighbours: it does not move if these move at once.
+pub(super) fn joins_alike(own: MatRef<'_, f64>, next: MatRef<'_, f64>) -> bool {
+    let mut rows = 0..own.nrows();
+    let joins = |i: usize, j: usize| next[(i, j)] != 0.0;
+    let alike = |i: usize, j: usize| own[(i, j)] + next[(i, j)] == 0.0;
+    let dofs = || 0..own.ncols();
+    rows.any(|i| dofs().any(|j| joins(i, j)) && dofs().all(|j| alike(i, j)))
+}
+
 /// `K + Bᴴ D B`.
 fn restrained(stiffness: &Mat<c64>, rows: &Mat<c64>, contacts: MatRef<'_, f64>) -> Mat<c64> {
     stiffness + rows.adjoint() * (super::modes::complex(contacts) * rows)
@@ -324,6 +333,11 @@ impl Compliance for CyclicCompliance {
         // All nodal diameters are much alike; this one has been decomposed.
         let harmonic = self.outline.forced.first().copied().unwrap_or(1);
         self.wave(harmonic).map_or([0.0; 2], |wave| wave.effort(points, observed))
+    }
+
+    fn is_silent(&self, harmonic: usize) -> bool {
+        let CyclicPorts { own, next, .. } = &self.ports;
+        self.structure.diameter(harmonic) == 0 && joins_alike(own.as_ref(), next.as_ref())
     }
 
     fn is_direct(&self) -> bool {

@@ -202,6 +202,12 @@ pub trait Compliance: Send + Sync {
         [0.0; 2]
     }
 
+    /// Whether a harmonic of friction comes to all sectors at once, so that contacts between the same points of
+    /// neighbours neither feel it nor move by it.
+    fn is_silent(&self, _harmonic: usize) -> bool {
+        false
+    }
+
     /// Whether a frequency costs a factorisation per harmonic, of the whole or of a part.
     fn is_direct(&self) -> bool {
         false

@@ -5,6 +5,7 @@
 //! DOFs of their coupling alone, so that a response of the whole disk takes one cyclic block
 //! tridiagonal solution in these DOFs: the effort grows with the number of sectors.
 
+use super::cyclic::joins_alike;
 use super::flexibility::RIGID_BODY;
 use super::ports::{forced_harmonics, HarmonicLoad, Ports};
 use super::ring_order::{RingLayout, RingOrder, SectorReceptances};
@@ -12,6 +13,9 @@ use super::{compliance, Compliance, Outline, Receptance, Structure};
 use crate::Error;
 use faer::{c64, Mat, MatRef};
 use std::sync::OnceLock;
+
+/// Square of what rounding leaves of loads that are the same but for their phase, relative to them.
+const ROUNDING: f64 = 1e-18;
 
 /// What couples a sector to the next one: the blocks `A_1` of mass, damping and stiffness; the
 /// force on sector i is `A_1 x_{i+1} + A_1ᵀ x_{i−1}`.
@@ -52,6 +56,9 @@ pub struct Ring {
     /// where there are none.
     contact_links: Vec<Mat<f64>>,
     pub(super) layout: RingLayout,
+    /// By how much loads are ahead from sector to sector, if they travel and contacts join the same points of
+    /// neighbours, and the harmonic of these loads.
+    pub(super) joined_wave: Option<(usize, f64)>,
     frequencies: OnceLock<[Vec<f64>; 2]>,
     pub(super) highest: f64,
     /// Without the natural frequencies, which take a decomposition of the whole disk.
@@ -127,7 +134,20 @@ impl Ring {
         let contact_links =
             parts[..different].iter().map(|part| contact_link(part, &layout)).collect();
         let frequencies = OnceLock::new();
-        Ok(Self { parts, sectors, coupling, contact_links, layout, frequencies, highest, outline })
+        let joins = joins_alike(first.own.as_ref(), first.next.as_ref());
+        let harmonic = outline.forced.iter().copied().find(|&k| k > 0).filter(|_| joins);
+        let joined_wave = harmonic.and_then(|k| Some((k, ahead(&parts, k)?)));
+        Ok(Self {
+            parts,
+            sectors,
+            coupling,
+            contact_links,
+            layout,
+            joined_wave,
+            frequencies,
+            highest,
+            outline,
+        })
     }
 
     /// Number of sectors.
@@ -262,6 +282,25 @@ impl Ring {
             [true, false].map(|stuck| frequencies(stuck).unwrap_or_default())
         })
     }
+}
+
+/// By how much the loads of a harmonic are ahead from sector to sector, if they travel round the ring.
+fn ahead(parts: &[RingSector], harmonic: usize) -> Option<f64> {
+    let load = |part: &RingSector| {
+        part.loads.iter().find(|load| load.harmonic == harmonic).map(|load| load.amplitude.clone())
+    };
+    let loads: Vec<Vec<c64>> = parts.iter().map(load).collect::<Option<_>>()?;
+    let product = |one: &[c64], next: &[c64]| -> c64 {
+        one.iter().zip(next).map(|(one, next)| one.conj() * next).sum()
+    };
+    let turn = product(&loads[0], &loads[1 % loads.len()]);
+    let turn = turn / turn.norm();
+    let mut pairs = loads.iter().zip(loads.iter().cycle().skip(1));
+    let travels = |(one, next): (&Vec<c64>, &Vec<c64>)| {
+        let left = one.iter().zip(next).map(|(one, next)| (next - one * turn).norm_sqr());
+        left.sum::<f64>() <= ROUNDING * product(one, one).re
+    };
+    pairs.all(travels).then(|| turn.im.atan2(turn.re))
 }
 
 /// `Bᵀ D B'` on the interface, of the stuck contacts between a sector and the next one.

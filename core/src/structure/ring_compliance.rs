@@ -5,6 +5,10 @@ use super::ring_order::{RingMotion, RingOrder};
 use super::{pays_for_modes, Compliance, Outline, Quantity, Receptance, Request};
 use crate::Error;
 use faer::c64;
+use std::f64::consts::TAU;
+
+/// Share of a turn by which harmonics that come to all sectors at once miss whole turns: rounding.
+const SILENT: f64 = 1e-9;
 
 impl Ring {
     /// [`Compliance::displacement`] with the equations of this harmonic and frequency and the motion
@@ -74,6 +78,13 @@ impl Compliance for Ring {
             let own = sector.effort(sector.contacts(), each);
             // Each is eliminated from the ring, with two neighbours beside it.
             [receptance + own[0] + 1e3 + 0.5 * interface.powi(3), displacement + own[1] + 200.0]
+        })
+    }
+
+    fn is_silent(&self, harmonic: usize) -> bool {
+        self.joined_wave.is_some_and(|(forced, ahead)| {
+            let turns = (harmonic / forced) as f64 * ahead / TAU;
+            harmonic % forced == 0 && (turns - turns.round()).abs() < SILENT
         })
     }
 
