@@ -121,7 +121,8 @@ impl Extension {
         // Even harmonics, where there are any, are between.
         let silent = kept.half_wave() && compliance.is_silent(highest + least);
         let first = highest + if silent { 2 * least } else { least };
-        let beyond = first.max(highest + (SHARE * highest as f64) as usize);
+        let share = (SHARE * highest as f64 / least as f64).ceil() as usize;
+        let beyond = first.max(highest + share * least);
         let farthest = FARTHEST.0 * highest + FARTHEST.1;
         let wanted = (reach.min(farthest as f64) as usize).max(beyond);
         let (orders, steps) = (solution.orders(highest), OF_SOLUTION * solution.step(highest));
