@@ -44,6 +44,8 @@ class Interruption:
         self._installed = self._handlers.copy()
         self._noted: tuple[int, float] | None = None
         self._at_once = False
+        self._ended = False
+        """Whether work was told to end, which may have been complete then."""
         self._outer: Interruption | None = None
         """The block around this one, in which signals wait, too."""
         self._whole: Interrupted | None = None
@@ -84,8 +86,10 @@ class Interruption:
     def _note(self, number: int, frame: FrameType | None) -> None:
         again = self._noted is not None and time.monotonic() > self._noted[1] + _IMPATIENT
         if self._at_once or again:
-            self._noted = None
+            # Python passes over what is raised while an object goes: it is heeded once more.
+            self._noted = number, time.monotonic()
             self._handlers[number](number, frame)
+            self._noted = None
         elif self._noted is None:
             self._noted = number, time.monotonic()
 
@@ -93,7 +97,17 @@ class Interruption:
         """Call the handler of a signal that was noted, which may raise KeyboardInterrupt."""
         if self._noted is not None:
             number, self._noted = self._noted[0], None
-            self._handlers[number](number, None)
+            with self._ending():
+                self._handlers[number](number, None)
+
+    @contextmanager
+    def _ending(self) -> Iterator[None]:
+        """Remember Ctrl-C: work that hears of it may be complete by then, and say nothing of it."""
+        try:
+            yield
+        except KeyboardInterrupt:
+            self._ended = True
+            raise
 
     def pass_on(self) -> None:
         """Heed a signal, unless it is the first one that waits in the block around this one."""
@@ -112,6 +126,9 @@ class Interruption:
         try:
             self.heed()
             yield
+        except KeyboardInterrupt:
+            self._noted = None
+            raise
         finally:
             self._at_once = before
 
@@ -119,7 +136,7 @@ class Interruption:
         """Heed signals, and tell how much of the work is done."""
         self.heed()
         if self._progress is not None:
-            with self.at_once():
+            with self._ending(), self.at_once():
                 self._progress(share)
 
     def completed(self, result: Kind, what: str) -> Kind:
@@ -149,6 +166,8 @@ class Interruption:
             self(1.0)
         except KeyboardInterrupt:
             raise self._whole from None
+        if self._ended:
+            raise self._whole
         return result
 
 

@@ -4,6 +4,7 @@ import os
 import signal
 import sys
 import threading
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from itertools import count
@@ -134,6 +135,59 @@ def test_a_signal_while_a_sweep_is_put_together_keeps_it(model, ctrl_c, monkeypa
     with pytest.raises(ss.Interrupted, match="when all was computed") as caught:
         ss.sweep(model, lambda one: ss.forced_response(one, [30.0], 3), slip_force=[0.5, 1.0])
     assert len(caught.value.result.results) == 2
+
+
+def test_work_that_is_complete_when_it_hears_of_the_end_does_not_pass_over_it(model, monkeypatch):
+    core = _core.forced_response
+
+    def deaf(*arguments):
+        found = core(*arguments)
+        with suppress(KeyboardInterrupt):
+            arguments[5](0.9)
+        return found
+
+    def press(share):
+        if share == 0.9:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(_core, "forced_response", deaf)
+    with pytest.raises(ss.Interrupted, match="when all was computed") as caught:
+        ss.forced_response(model, [30.0, 33.0], 3, progress=press)
+    assert caught.value.complete
+    assert not caught.value.result.interrupted
+
+
+def test_a_signal_that_python_passes_over_is_heeded_later(ctrl_c):
+    class Passing:
+        def __del__(self):
+            with suppress(KeyboardInterrupt):  # as Python does
+                signal.raise_signal(signal.SIGINT)
+
+    reached = []
+
+    def within():
+        with Interruption() as watch:
+            with watch.at_once():
+                passing = Passing()
+                del passing
+                reached.append("behind")
+                watch(0.5)
+            reached.append("lost")
+
+    with pytest.raises(KeyboardInterrupt):
+        within()
+    assert reached == ["behind"]
+
+
+def test_a_part_of_the_first_value_is_not_taken_for_the_whole(model):
+    part = replace(ss.forced_response(model, [30.0], 3), interrupted=True)
+
+    def stopped(_):
+        raise ss.Interrupted("stopped", part)
+
+    with pytest.raises(KeyboardInterrupt, match="before a value was complete") as caught:
+        ss.sweep(model, stopped, slip_force=[0.5, 1.0])
+    assert not isinstance(caught.value, ss.Interrupted)
 
 
 def test_a_value_that_was_complete_when_a_signal_came_is_kept(model):

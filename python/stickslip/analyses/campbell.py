@@ -78,8 +78,8 @@ def campbell(
 
     with Run("campbell", progress) as run:
         try:
-            with run.at_once():
-                for number, speed in enumerate(speeds.tolist()):
+            for number, speed in enumerate(speeds.tolist()):
+                with run.at_once():
                     model = model_at(models, speed)
                     if settings.diagram != "campbell" and not isinstance(model, BladedDisk):
                         reason = f"{settings.diagram} is that of a tuned disk"
@@ -87,9 +87,9 @@ def campbell(
                             f"diagram: {reason}; give ss.BladedDisk(...)",
                             study=f"kind: {reason}; add the table [disk]",
                         )
-                    members.append(model)
-                    found.append(_frequencies(model))
-                    run.reached((number + 1) / speeds.size)
+                members.append(model)
+                found.append(_frequencies(model))
+                run.reached((number + 1) / speeds.size)
         except KeyboardInterrupt:
             if not found:
                 raise

@@ -111,7 +111,8 @@ def fit(
                 result = _result(search, settings, start, share(run, _SEARCH, 1.0))
         except KeyboardInterrupt:
             if search.best is None:
-                raise
+                # What the curve that is compared has come to is no fit.
+                raise KeyboardInterrupt("fit interrupted before a first evaluation") from None
             interrupted = True
             result = _result(search, settings, start, None, interrupted=True)
         if interrupted:

@@ -97,7 +97,9 @@ def speed_response(
                 run((number + 1) / speeds.size)
         except KeyboardInterrupt as stop:
             if not found:
-                raise
+                # What the curve of the first speed has come to is no response over the speed.
+                reason = "speed response interrupted before a speed was complete"
+                raise KeyboardInterrupt(reason) from None
             done = f"{len(found)} of {speeds.size} speeds are complete"
             message = f"speed response interrupted: {done}"
             raise Interrupted(message, result(interrupted=True)) from stop

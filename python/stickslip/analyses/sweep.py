@@ -100,7 +100,8 @@ def swept(
             late = [stop] if isinstance(stop, Interrupted) and stop.complete else []
             count = len(results) + len(late)
             if not count:
-                raise
+                # What its first value has come to is no sweep.
+                raise KeyboardInterrupt("sweep interrupted before a value was complete") from None
 
             def done() -> Sweep:
                 found = (*results, *(cast("Result", one.result) for one in late))
