@@ -15,7 +15,7 @@ import pytest
 
 import stickslip as ss
 from stickslip import _core
-from stickslip.analyses import side_by_side, speed_response
+from stickslip.analyses import prediction, side_by_side, speed_response
 from stickslip.analyses.side_by_side import in_turn, whole
 from stickslip.interruption import Interruption
 
@@ -179,14 +179,30 @@ def test_a_signal_that_python_passes_over_is_heeded_later(ctrl_c):
     assert reached == ["behind"]
 
 
-def test_a_part_of_the_first_value_is_not_taken_for_the_whole(model):
+SEVERAL = {
+    "sweep": lambda model, stopped: ss.sweep(model, stopped, slip_force=[0.5, 1.0]),
+    "speed response": lambda model, _: ss.speed_response(
+        model, dof="a", speed=[30.0, 33.0], engine_order=1
+    ),
+    "fit": lambda model, _: ss.fit(
+        model,
+        [ss.Measurement([30.0, 33.0], "a", [1e-3, 1e-3])],
+        parameters={"slip_force": (0.1, 1.0)},
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", SEVERAL)
+def test_a_part_of_the_first_value_is_not_taken_for_the_whole(kind, model, monkeypatch):
     part = replace(ss.forced_response(model, [30.0], 3), interrupted=True)
 
-    def stopped(_):
+    def stopped(*_, **__):
         raise ss.Interrupted("stopped", part)
 
-    with pytest.raises(KeyboardInterrupt, match="before a value was complete") as caught:
-        ss.sweep(model, stopped, slip_force=[0.5, 1.0])
+    monkeypatch.setattr(speed_response, "begun_with", stopped)
+    monkeypatch.setattr(prediction, "forced_response", stopped)
+    with pytest.raises(KeyboardInterrupt, match=f"{kind} interrupted before") as caught:
+        SEVERAL[kind](model, stopped)
     assert not isinstance(caught.value, ss.Interrupted)
 
 

@@ -93,10 +93,8 @@ def campbell(
         except KeyboardInterrupt:
             if not found:
                 raise
-            own = result(interrupted=True)
-            raise stopped(
-                "Campbell diagram", f"{len(found)} of {speeds.size} speeds", own
-            ) from None
+            done = f"{len(found)} of {speeds.size} speeds"
+            raise stopped("Campbell diagram", done, result(interrupted=True)) from None
         whole = result(interrupted=False)
         if settings.diagram != "nodal-diameters" and not all(whole.orders):
             reason = "orders: forces of engine order 0 have no frequency that goes with the speed"
