@@ -25,7 +25,7 @@ pub struct Found {
 
 enum Written {
     Soon(Receiver<PyResult<Columns>>),
-    Now(Columns),
+    Now(PyResult<Columns>),
     Taken,
 }
 
@@ -68,7 +68,7 @@ impl Found {
         let mut columns = self.columns();
         if let Written::Soon(receiver) = &*columns {
             match receiver.recv_timeout(LOOK) {
-                Ok(written) => *columns = Written::Now(written?),
+                Ok(written) => *columns = Written::Now(written),
                 Err(RecvTimeoutError::Timeout) => return Ok(false),
                 Err(RecvTimeoutError::Disconnected) => return Err(lost()),
             }
@@ -90,8 +90,14 @@ impl Found {
             look(progress.as_ref(), 1.0)?;
         }
         let solution = self.solution.get_or_try_init(py, || {
-            match replace(&mut *self.columns(), Written::Taken) {
-                Written::Now(columns) => Ok(columns.end(py)?.unbind()),
+            let written = replace(&mut *self.columns(), Written::Taken);
+            match written {
+                Written::Now(Ok(columns)) => Ok(columns.end(py)?.unbind()),
+                Written::Now(Err(error)) => {
+                    // Whoever asks again is told the same.
+                    *self.columns() = Written::Now(Err(error.clone_ref(py)));
+                    Err(error)
+                }
                 Written::Soon(_) | Written::Taken => Err(lost()),
             }
         });
