@@ -55,6 +55,27 @@ def test_no_error_is_far_above_its_estimate(seed: int) -> None:
             assert (error <= 5.0 * frf.error_estimate(dof) + rounding).all(), (harmonics, dof)
 
 
+@pytest.mark.parametrize(("order", "harmonics"), [(41, 7), (61, 15), (81, 27), (121, 27)])
+def test_estimates_see_the_mode_that_a_high_harmonic_meets(order: int, harmonics: int) -> None:
+    stiffness = np.array([[2.0, -0.3], [-0.3, order**2]])
+    blade = ss.Structure(np.eye(2), stiffness, ss.ModalDamping(1e-5), ["blade", "tip"])
+    friction = ss.Jenkins("blade", stiffness=3.0, slip_force=0.2)
+    model = ss.Model(blade, [friction], [ss.Force("blade", 1.0)])
+    # Far beyond what the estimate of so few harmonics can afford to follow as a whole.
+    omega = [ss.natural_frequencies(model)[-1] / order]
+    tip = ss.forced_response(model, omega, 191).arrays.displacement[0, :, 1]
+    few = ss.forced_response(model, omega, harmonics)
+    error = tip.copy()
+    error[: harmonics + 1] -= few.arrays.displacement[0, :, 1]
+    sizes = np.abs(error)
+    assert sizes.argmax() == order
+    assert 0.8 * sizes.sum() <= few.error_estimate("tip")[0] <= 2.0 * sizes.sum()
+    automatic = ss.forced_response(model, omega, observe=["blade", "tip"])
+    missed = np.abs(tip[automatic.harmonics[0] + 1 :]).sum()
+    # A thousandth of its own size, or of the blade's thousandth.
+    assert missed <= 2e-3 * max(np.abs(tip).sum(), 1e-3 * automatic.amplitude("blade")[0])
+
+
 @pytest.mark.parametrize("harmonic", [2, 3])
 def test_loads_of_one_higher_harmonic_are_answered_at_its_multiples(harmonic: int) -> None:
     stiffness = 1e4 * np.array([[2.0, -1.0, 0.0], [-1.0, 2.2, -1.0], [0.0, -1.0, 1.5]])

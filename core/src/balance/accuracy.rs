@@ -13,6 +13,7 @@
 
 use super::condensed::Condensed;
 use super::effort::{allowance, Effort};
+use super::resonances::{loaded_points, Resonances};
 use super::solution::Point;
 use super::unknowns::Unknowns;
 use crate::contact::Residual;
@@ -35,6 +36,8 @@ const FARTHEST: (usize, usize) = (2, 60);
 /// multiples of the harmonics that loads have in common: friction answers loads at 3ω at 9ω, 15ω, …
 /// Where these come to all sectors at once, and contacts between sectors do not feel them, the next ones tell.
 const LEAST: usize = 2;
+/// Share of what it may take that is left to single harmonics beyond it, if they meet modes.
+const RESERVED: f64 = 0.5;
 
 /// Newton steps that the solution of a point with slip takes: four to seven, the last ones without a
 /// tangent of their own.
@@ -91,6 +94,8 @@ pub(super) struct Extension {
     pub(super) formed: bool,
     /// Whether receptances are of loads at the points that slip alone, if dense ones are taken.
     pub(super) part: bool,
+    /// What single harmonics beyond it that meet modes may take, in reckoned nanoseconds.
+    pub(super) single: f64,
 }
 
 impl Extension {
@@ -117,7 +122,7 @@ impl Extension {
     fn of([solution, effort]: [&Effort<'_>; 2], kept: &Harmonics, omega: f64, credit: f64) -> Self {
         let (highest, compliance) = (kept.highest(), effort.compliance());
         let reach = PAST_LAST_MODE * compliance.highest_frequency() / omega;
-        let least = LEAST * common_divisor(&compliance.forced_harmonics());
+        let least = LEAST * effort.common_harmonic();
         // Even harmonics, where there are any, are between.
         let silent = kept.half_wave() && compliance.is_silent(highest + least);
         let first = highest + if silent { 2 * least } else { least };
@@ -135,9 +140,18 @@ impl Extension {
         };
         let budget =
             |order: usize| allowance(effort.allowed([highest, order]), steps, orders).min(credit);
-        let affordable = |order: &usize| account(*order).of(true) <= budget(*order);
-        let candidates = (first..=wanted).step_by(least);
-        let farthest = candidates.take_while(affordable).last();
+        let candidates = || (first..=wanted).step_by(least);
+        let farthest = |single: f64| {
+            let affordable = |order: &usize| account(*order).of(true) + single <= budget(*order);
+            candidates().take_while(affordable).last()
+        };
+        // Modes that what it can afford does not reach are met by single harmonics.
+        let reserved = |order: usize| {
+            let most = (RESERVED * budget(order)).min(budget(first) - account(first).of(true));
+            Resonances::beyond(order, most, effort, kept, omega).effort
+        };
+        let single = farthest(0.0).map_or(0.0, reserved);
+        let farthest = farthest(single);
         let order = farthest.unwrap_or(first);
         // Friction forces have kinks: their harmonics fall with the square of the order.
         let sum = |to: usize| 1.0 / first as f64 - 1.0 / (to + least) as f64;
@@ -148,7 +162,8 @@ impl Extension {
         let of_step = effort.step(order) + 0.5 * left;
         let products = effort.products_within(of_step, [highest, order]);
         let (formed, part) = (effort.is_formed(), effort.takes_part());
-        Self { highest: order, steps, unseen, account: account(order), products, formed, part }
+        let (account, single) = (account(order), if single > 0.0 { left } else { 0.0 });
+        Self { highest: order, steps, unseen, account, products, formed, part, single }
     }
 
     /// Whether a neighbour may tell what its second step adds.
@@ -170,17 +185,6 @@ impl Extension {
     pub(super) fn within(self, resolved: usize) -> Self {
         Self { highest: self.highest.min(resolved), ..self }
     }
-}
-
-/// Greatest common divisor of numbers, 1 of none.
-fn common_divisor(numbers: &[usize]) -> usize {
-    let divisor = |mut a: usize, mut b: usize| {
-        while b > 0 {
-            (a, b) = (b, a % b);
-        }
-        a
-    };
-    numbers.iter().copied().fold(0, divisor).max(1)
 }
 
 /// What an extended balance says.
@@ -315,15 +319,6 @@ fn of_extended(
     let all = found.errors.iter_mut().chain(&mut found.first).chain([&mut found.contacts]);
     all.for_each(|error| *error *= extension.unseen);
     Ok(Some(found))
-}
-
-/// Points of the contacts that slip in a solution, and of nodes, which carry loads without slip.
-fn loaded_points(model: &Model, point: &Point) -> Vec<usize> {
-    let slips = |points: &Range<usize>| {
-        point.contacts[points.clone()].iter().any(|contact| contact.slip_fraction > 0.0)
-    };
-    let loaded = model.points().iter().filter(|points| points.len() > 1 || slips(points));
-    loaded.flat_map(Range::clone).collect()
 }
 
 /// Which contacts slip where the tangents are known.

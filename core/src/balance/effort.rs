@@ -38,6 +38,9 @@ const BEGIN_TO_SLIP: f64 = 0.1;
 /// Share of a look for turning points that a contact takes if it sticks: measured, 0.1 to 0.2.
 const OF_STICKING: f64 = 0.15;
 
+/// Of a coarse table of samples, over the product of its highest harmonic and that of motions \[ns\].
+const OF_TABLE: f64 = 4.0;
+
 /// What Newton steps, compliances and displacements of a solution allow an estimate.
 pub(super) fn allowance(share: f64, steps: f64, orders: f64) -> f64 {
     share * steps + (share * orders).min(orders.max(steps))
@@ -97,6 +100,11 @@ impl<'a> Effort<'a> {
 
     pub(super) fn compliance(&self) -> &'a dyn Compliance {
         self.model.compliance()
+    }
+
+    /// What the harmonics that loads have are multiples of; those that friction answers with are, too.
+    pub(super) fn common_harmonic(&self) -> usize {
+        common_divisor(&self.compliance().forced_harmonics())
     }
 
     /// What a solution with harmonics up to `highest` that starts from its neighbour allows the estimates along their
@@ -210,6 +218,14 @@ impl<'a> Effort<'a> {
         Self { slipping: self.slipping + (BEGIN_TO_SLIP * sticking) as usize, ..*self }
     }
 
+    /// Of what a single harmonic would change in a solution up to `highest`: a table of its own, the laws as they are
+    /// and once more for each direction of a contact, and few equations.
+    pub(super) fn of_resonance(&self, highest: usize, order: usize) -> f64 {
+        let table = OF_TABLE * (highest * order) as f64;
+        let laws = (1.0 + self.coupled) * self.values(order);
+        table + laws + self.of_order[1] + self.of_order[2] + formed_step(2.0 * self.slipping as f64)
+    }
+
     /// Of a Newton step in the harmonics up to `highest`.
     pub(super) fn step(&self, highest: usize) -> f64 {
         let (compliance, slots) = (self.compliance(), self.slots(highest));
@@ -226,6 +242,17 @@ impl<'a> Effort<'a> {
 /// Of a factorisation in so many unknowns, and of what leads to it.
 fn formed_step(unknowns: f64) -> f64 {
     1.3e3 + unknowns * (190.0 + unknowns * (4.0 + 0.03 * unknowns))
+}
+
+/// Greatest common divisor of numbers, 1 of none.
+fn common_divisor(numbers: &[usize]) -> usize {
+    let divisor = |mut a: usize, mut b: usize| {
+        while b > 0 {
+            (a, b) = (b, a % b);
+        }
+        a
+    };
+    numbers.iter().copied().fold(0, divisor).max(1)
 }
 
 /// Points of a law that couples several, in the mean over those of all such laws; 1 if there are none.

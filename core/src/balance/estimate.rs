@@ -3,7 +3,9 @@
 use super::accuracy::{estimate, Estimate, Extension};
 use super::condensed::Condensed;
 use super::effort::Effort;
+use super::evaluation::Evaluated;
 use super::forced::ForcedBalance;
+use super::resonances::{self, Resonances};
 use super::sampling::{finer_than, sampling_errors};
 use super::settings::Method;
 use super::smooth_piece::IN_A_ROW;
@@ -16,7 +18,7 @@ use crate::Error;
 /// Rounding of a series of forces, relative to them.
 const ROUNDING: f64 = 1e-12;
 
-impl ForcedBalance<'_> {
+impl<'a> ForcedBalance<'a> {
     /// Number of points that slip, with those beside them that their law couples to them; a law that may
     /// depart from a spring without slip counts as one.
     pub(super) fn nonlinear_points(&self, point: &Point) -> usize {
@@ -105,8 +107,38 @@ impl ForcedBalance<'_> {
         let earned = counts.then(|| effort.earned(harmonics.highest()));
         let credit = self.neighbour.credit(point, earned);
         let whole = Extension::new(&effort, harmonics, point.omega, credit);
-        let follows = whole.has_two() && fixed;
         let solution = Unknowns { harmonics: harmonics.clone(), values: x.to_vec() };
+        let Some(mut errors) = self.errors(&solution, solved, point, (&effort, whole))? else {
+            return Ok(false);
+        };
+        let meets =
+            Resonances::beyond(whole.highest, whole.single, &effort, harmonics, point.omega);
+        self.neighbour.pay(meets.effort);
+        self.profile.work += meets.effort;
+        for order in meets.orders {
+            let (model, resolved) = self.resolving(point, order)?;
+            if resolved < order {
+                break;
+            }
+            let residual = self.settings.residual;
+            let more = resonances::answer(&model, residual, &solution, self.observe, point, order);
+            errors.iter_mut().zip(more).for_each(|(error, more)| *error += more);
+        }
+        point.error_estimate = errors;
+        Ok(true)
+    }
+
+    /// What the harmonics of an extended balance would change in a solution, as it goes on along a curve or anew;
+    /// nothing if the analysis is to end.
+    fn errors(
+        &mut self,
+        solution: &Unknowns,
+        solved: Option<&Condensed<'_>>,
+        point: &mut Point,
+        (effort, whole): (&Effort<'_>, Extension),
+    ) -> Result<Option<Vec<f64>>, Error> {
+        let harmonics = &solution.harmonics;
+        let follows = whole.has_two() && self.control.is_fixed();
         if follows {
             let (discarded, of) = (whole.discarded(harmonics), self.model.compliance());
             // As many points go on as solutions cost what an estimate does; all that may of a ring.
@@ -114,18 +146,17 @@ impl ForcedBalance<'_> {
             let ring = of.ring().is_some();
             let in_a_row = if ring { IN_A_ROW } else { cost.ceil().max(1.0) as usize };
             let piece = &mut self.neighbour.piece;
-            if let Some(errors) = piece.continued(point, &solution, of, discarded, in_a_row) {
-                point.error_estimate = errors;
-                return Ok(true);
+            if let Some(errors) = piece.continued(point, solution, of, discarded, in_a_row) {
+                return Ok(Some(errors));
             }
         }
         let growth = if follows { self.neighbour.served(point) } else { None };
         let extension = if growth.is_some() { whole.beside() } else { whole };
-        let estimate = self.extended(&solution, solved, point, (&effort, extension))?;
+        let estimate = self.extended(solution, solved, point, (effort, extension))?;
         let Some(Estimate { mut errors, first, keeps_states, ended_in_state, took_two, .. }) =
             estimate
         else {
-            return Ok(false);
+            return Ok(None);
         };
         self.neighbour.pay(extension.account.of(took_two));
         if let Some(growth) = growth.filter(|_| ended_in_state) {
@@ -134,9 +165,8 @@ impl ForcedBalance<'_> {
             let told = follows && keeps_states;
             self.neighbour.learn(point, &errors, told.then_some(&first[..]));
         }
-        self.neighbour.note(point, solution, &errors);
-        point.error_estimate = errors;
-        Ok(true)
+        self.neighbour.note(point, solution.clone(), &errors);
+        Ok(Some(errors))
     }
 
     /// How wrong a solution is at its contacts: the largest change that the discarded harmonics would bring to
@@ -183,13 +213,8 @@ impl ForcedBalance<'_> {
         point: &mut Point,
         extension: Extension,
     ) -> Result<Option<Estimate>, Error> {
-        // Few samples, as long as nobody insists on them, must not hide harmonics.
-        let climb = self.control.samples_climb();
-        let resolved = if climb { usize::MAX } else { self.evaluated(point.samples)?.resolves() };
-        let extension = extension.within(resolved);
-        let order = extension.highest;
-        let least = if climb { (8 * (order + 1)).next_power_of_two() } else { 0 };
-        let model = self.evaluated(point.samples.map(|samples| samples.max(least)))?;
+        let (model, order) = self.resolving(point, extension.highest)?;
+        let extension = extension.within(order);
         let table = self.coarse_table(order);
         let residual = self.settings.residual;
         let ask = self.interruption();
@@ -206,6 +231,19 @@ impl ForcedBalance<'_> {
         let all = found.errors.iter_mut().chain(&mut found.first).chain([&mut found.contacts]);
         all.for_each(|error| *error *= unseen);
         Ok(Some(found))
+    }
+
+    /// The model as it is evaluated for what a point discards up to an order, or as high as it resolves. Few samples, as
+    /// long as nobody insists on them, must not hide harmonics.
+    fn resolving(&mut self, point: &Point, order: usize) -> Result<(Evaluated<'a>, usize), Error> {
+        if self.control.samples_climb() {
+            let least = (8 * (order + 1)).next_power_of_two();
+            let samples = point.samples.map(|samples| samples.max(least));
+            return Ok((self.evaluated(samples)?, order));
+        }
+        let model = self.evaluated(point.samples)?;
+        let resolved = order.min(model.resolves());
+        Ok((model, resolved))
     }
 
     /// What the changes by an extended balance count. DOFs without mass move with kinks: harmonics fall with the

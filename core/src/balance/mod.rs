@@ -34,6 +34,7 @@ mod ring;
 mod sweep;
 
 mod resolution_control;
+mod resonances;
 mod rough_start;
 mod rounded_tangents;
 mod sampling;

@@ -46,7 +46,8 @@ impl SampleTable {
     /// The table of a set of harmonics.
     #[must_use]
     pub fn new(harmonics: Harmonics) -> Self {
-        Self::on_grid(harmonics, COARSER)
+        let resolved = harmonics.highest();
+        Self::on_grid(harmonics, resolved, COARSER)
     }
 
     /// The table of motions that need not be followed to the last digit, on a quarter of the samples: it
@@ -54,12 +55,18 @@ impl SampleTable {
     /// quarter of the effort.
     #[must_use]
     pub fn coarse(harmonics: Harmonics) -> Self {
-        Self::on_grid(harmonics, 1)
+        let resolved = harmonics.highest();
+        Self::coarse_up_to(resolved, harmonics)
     }
 
-    fn on_grid(harmonics: Harmonics, stride: usize) -> Self {
-        let quarter =
-            stride * (SAMPLES_PER_HARMONIC / COARSER * harmonics.highest().max(4)).div_ceil(4);
+    /// The same of motions that have hardly anything above the harmonic `resolved`.
+    #[must_use]
+    pub fn coarse_up_to(resolved: usize, harmonics: Harmonics) -> Self {
+        Self::on_grid(harmonics, resolved, 1)
+    }
+
+    fn on_grid(harmonics: Harmonics, resolved: usize, stride: usize) -> Self {
+        let quarter = stride * (SAMPLES_PER_HARMONIC / COARSER * resolved.max(4)).div_ceil(4);
         // The angles of all orders are multiples of the same step.
         let count = 4 * quarter;
         let step = std::f64::consts::TAU / count as f64;
@@ -74,11 +81,11 @@ impl SampleTable {
         let (mut cos, mut sin) = (vec![0.0; size], vec![0.0; size]);
         let rows = cos.chunks_exact_mut(row).zip(sin.chunks_exact_mut(row));
         for (&order, (cos, sin)) in harmonics.oscillating().iter().zip(rows) {
-            let mut at = 0;
+            let (mut at, ahead) = (0, order % count);
             for (cos, sin) in cos.iter_mut().zip(sin) {
                 (*sin, *cos) = unit[at];
                 // A remainder would take most of the time.
-                at += order;
+                at += ahead;
                 if at >= count {
                     at -= count;
                 }
