@@ -50,6 +50,9 @@ const UNEXPLAINED: f64 = 0.3;
 /// The change after the second step counts up to this multiple of that after the first, unless a contact
 /// begins or ceases to slip: at nearly rigid contacts that go on slipping it overshoots tenfold.
 const TRUSTED: f64 = 2.0;
+/// Of solutions up to this harmonic the first change falls short there by as much, and the geometric mean of both counts
+/// if it is more.
+const FEW: usize = 5;
 
 /// Newton steps of an extended balance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -291,9 +294,18 @@ fn of_extended(
         found.contacts = contact_change(extended, &begin, &x);
         found.took_two = last;
         if last {
-            let trusted = if found.keeps_states { TRUSTED } else { f64::INFINITY };
+            let [keeps, few] = [found.keeps_states, point.harmonics <= FEW];
+            let trusted = |first: f64, second: f64| {
+                let between = if few { (first * second).sqrt() } else { 0.0 };
+                let most = between.max(TRUSTED * first);
+                if keeps {
+                    second.min(most)
+                } else {
+                    second
+                }
+            };
             let errors = found.errors.iter_mut().zip(changes);
-            errors.for_each(|(error, change)| *error = error.max(change.min(trusted * *error)));
+            errors.for_each(|(error, change)| *error = error.max(trusted(*error, change)));
             break;
         }
         (found.first, found.errors) = (changes.clone(), changes);
