@@ -140,14 +140,20 @@ fn friction(
     };
     let still = evaluate(&x);
     let mut tangent = Mat::zeros(points.len(), points.len());
-    for direction in 0..loaded.iter().map(|(_, own, _)| own.len()).max().unwrap_or(0) {
-        let moved = || loaded.iter().filter(|(_, own, _)| direction < own.len());
-        let size = |own: &Range<usize>| PROBE * norm(&x[own.start * slots..own.end * slots]);
-        let probes: Vec<_> = moved().map(|(_, own, _)| size(own)).collect();
+    let offset = table.harmonics().offset();
+    let vibration = |own: &Range<usize>| {
+        let series = x[own.start * slots..own.end * slots].chunks_exact(slots);
+        series.map(|series| norm(&series[offset..])).fold(0.0, f64::max)
+    };
+    // A contact at rest sticks: its tangent is zero.
+    let probed = loaded.iter().map(|(_, own, place)| (*own, *place, PROBE * vibration(own)));
+    let probed: Vec<_> = probed.filter(|(.., probe)| *probe > 0.0).collect();
+    for direction in 0..probed.iter().map(|(own, ..)| own.len()).max().unwrap_or(0) {
+        let moved = || probed.iter().filter(|(own, ..)| direction < own.len());
         let at = |own: &Range<usize>| (own.start + direction) * slots + slot;
-        moved().zip(&probes).for_each(|((_, own, _), probe)| x[at(own)] = *probe);
+        moved().for_each(|(own, _, probe)| x[at(own)] = *probe);
         let changed = evaluate(&x);
-        for ((_, own, place), probe) in moved().zip(&probes) {
+        for (own, place, probe) in moved() {
             x[at(own)] = 0.0;
             for row in *place..place + own.len() {
                 // Motions at high harmonics meet all of the period alike: they bring no conjugate.
@@ -197,5 +203,20 @@ mod tests {
                 assert!((tangent[(0, 0)] - expected).norm() < 1e-3, "{order}: {tangent:?}");
             }
         }
+    }
+
+    /// A node that symmetry keeps at rest has no vibration to probe.
+    #[test]
+    fn a_contact_at_rest_sticks() {
+        let (mass, zero) = (Mat::identity(2, 2), Mat::zeros(2, 2));
+        let structure = Structure::new(mass.as_ref(), zero.as_ref(), mass.as_ref()).unwrap();
+        let law = Box::new(Jenkins::new(3.0, 0.4).unwrap());
+        let rows = |at: usize| Mat::from_fn(1, 2, |_, j| if j == at { 1.0 } else { 0.0 });
+        let contacts = (0..2).map(|at| Contact { law: law.clone(), rows: rows(at) }).collect();
+        let model = Model::new(structure, contacts, Vec::new()).unwrap();
+        let solution = Unknowns::new(Harmonics::new(1, true), vec![0.9, 0.2, 0.0, 0.0]);
+        let (load, tangent) = friction(&model, Residual::Centred, &solution, &[0, 1], 31);
+        assert!(load[(0, 0)].norm() > 0.0 && tangent[(0, 0)].norm() > 0.0);
+        assert_eq!((load[(1, 0)].norm(), tangent[(1, 1)].norm()), (0.0, 0.0));
     }
 }
