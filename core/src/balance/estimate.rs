@@ -165,6 +165,9 @@ impl<'a> ForcedBalance<'a> {
             let told = follows && keeps_states;
             self.neighbour.learn(point, &errors, told.then_some(&first[..]));
         }
+        if self.control.is_fixed() {
+            self.neighbour.raise(point, extension.highest, &mut errors);
+        }
         self.neighbour.note(point, solution.clone(), &errors);
         Ok(Some(errors))
     }

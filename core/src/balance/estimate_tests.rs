@@ -57,6 +57,27 @@ fn estimates_beside_each_other_take_what_solutions_leave() {
 }
 
 #[test]
+fn fewer_harmonics_are_raised_to_what_more_of_them_find_beside() {
+    let at = |omega: f64, size: f64| {
+        let displacement = vec![c64::new(0.0, size); 2];
+        Point { displacement, ..Point::empty(omega, PointStatus::Converged, 1, 1) }
+    };
+    let mut neighbour = Neighbour::default();
+    let mut raised = |omega: f64, size: f64, highest: usize, mut errors: [f64; 2]| {
+        neighbour.raise(&at(omega, size), highest, &mut errors);
+        errors
+    };
+    assert_eq!(raised(100.0, 1.0, 9, [3.0, 5.0]), [3.0, 5.0]);
+    // As the motion grows; never downwards, …
+    assert_eq!(raised(101.0, 2.0, 3, [1.0, 12.0]), [6.0, 12.0]);
+    assert_eq!(raised(101.0, 2.0, 11, [1.0, 12.0]), [1.0, 12.0]);
+    // … and not far away.
+    assert_eq!(raised(104.0, 2.0, 3, [0.5, 0.5]), [0.5, 0.5]);
+    assert_eq!(raised(104.5, 0.0, 2, [0.0, 0.1]), [0.0, 0.1]);
+    assert_eq!(raised(105.0, 4.0, 2, [0.0, 0.1]), [1.0, 1.0]);
+}
+
+#[test]
 fn a_solution_that_lacks_samples_is_not_asked_for_its_harmonics() {
     let law = Box::new(BoucWen::new(80.0, 0.3, 1.0, 0.5).unwrap());
     let amplitude = vec![c64::new(2.0, 0.0), c64::new(0.0, 0.0)];

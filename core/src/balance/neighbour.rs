@@ -5,7 +5,8 @@
 //! curve: what was found at one point holds for a few after it, as long as the first step makes no contact
 //! begin or cease to slip. Where the motion but for its phase hardly changes, and no discarded harmonic
 //! comes to a mode, the estimate itself goes on as it did between the two points before. What solutions take and
-//! estimates do not adds up, so that estimates cost no more than solutions along the curve as a whole.
+//! estimates do not adds up, so that estimates cost no more than solutions along the curve as a whole. Where this allows
+//! few harmonics only, an estimate is at least that of more harmonics at a point beside: the motion is about the same.
 
 use super::smooth_piece::{Estimated, SmoothPiece};
 use super::solution::Point;
@@ -27,16 +28,46 @@ pub(super) enum Rough {
     Lost,
 }
 
+/// A point that tells of those beside it.
+#[derive(Default)]
+struct Told {
+    omega: f64,
+    harmonics: usize,
+    served: usize,
+}
+
+impl Told {
+    fn by(point: &Point) -> Self {
+        Self { omega: point.omega, harmonics: point.harmonics, served: 0 }
+    }
+
+    /// Whether it tells of a point, as one more.
+    fn serves(&mut self, point: &Point) -> bool {
+        let near = (self.omega - point.omega).abs() <= NEAR * self.omega;
+        self.served += 1;
+        near && self.harmonics == point.harmonics && self.served <= SERVED
+    }
+}
+
+/// An estimate, its highest harmonic and the size of the motion.
+#[derive(Default)]
+struct Far {
+    at: Told,
+    highest: usize,
+    errors: Vec<f64>,
+    motion: f64,
+}
+
 /// The point at which an estimate was made as a whole last.
 #[derive(Default)]
 pub(super) struct Neighbour {
-    omega: f64,
-    harmonics: usize,
+    at: Told,
     /// Its error over that after the first step, of each observed DOF; empty where it is not known. It serves
     /// extended balances of another reach as well: to take the second step anew wherever the reach changes takes
     /// what an account has left for the reach itself, and estimates of rings come out more wrong.
     growth: Vec<f64>,
-    served: usize,
+    /// The last estimate that had more harmonics than those after it.
+    far: Far,
     /// The last frequency with a slipping contact, and what the solutions so far allow the estimates after it,
     /// in reckoned nanoseconds.
     account: Option<(f64, f64)>,
@@ -50,10 +81,22 @@ pub(super) struct Neighbour {
 impl Neighbour {
     /// By how much a whole estimate would be above the first step at a point beside.
     pub(super) fn served(&mut self, point: &Point) -> Option<Vec<f64>> {
-        let near = (self.omega - point.omega).abs() <= NEAR * self.omega;
-        let suits = near && self.harmonics == point.harmonics && self.served < SERVED;
-        self.served += 1;
-        (suits && !self.growth.is_empty()).then(|| self.growth.clone())
+        let serves = self.at.serves(point);
+        (serves && !self.growth.is_empty()).then(|| self.growth.clone())
+    }
+
+    /// Raises an estimate up to a harmonic to one of more harmonics beside it.
+    pub(super) fn raise(&mut self, point: &Point, highest: usize, errors: &mut [f64]) {
+        let motion = point.displacement.iter().map(|u| u.norm_sqr()).sum::<f64>().sqrt();
+        let far = &mut self.far;
+        if highest < far.highest && far.at.serves(point) {
+            let found = far.errors.iter().map(|error| error * motion / far.motion);
+            // What was at rest tells nothing, and what is infinite at a resonance is not so beside it.
+            let known = errors.iter_mut().zip(found).filter(|(_, found)| found.is_finite());
+            known.for_each(|(error, found)| *error = error.max(found));
+        } else {
+            *far = Far { at: Told::by(point), highest, errors: errors.to_vec(), motion };
+        }
     }
 
     /// What the estimate of a point may take, whose solution has `earned` so much: without a limit where its
@@ -99,6 +142,6 @@ impl Neighbour {
         let growth = errors.iter().zip(first.unwrap_or_default());
         // 0 over 0 is no growth.
         self.growth = growth.map(|(whole, first)| (whole / first).max(1.0)).collect();
-        (self.omega, self.harmonics, self.served) = (point.omega, point.harmonics, 0);
+        self.at = Told::by(point);
     }
 }
