@@ -75,6 +75,11 @@ fn fewer_harmonics_are_raised_to_what_more_of_them_find_beside() {
     assert_eq!(raised(104.0, 2.0, 3, [0.5, 0.5]), [0.5, 0.5]);
     assert_eq!(raised(104.5, 0.0, 2, [0.0, 0.1]), [0.0, 0.1]);
     assert_eq!(raised(105.0, 4.0, 2, [0.0, 0.1]), [1.0, 1.0]);
+    // An infinite estimate stays alone, and a point at rest tells nothing.
+    assert_eq!(raised(110.0, 1.0, 9, [f64::INFINITY, 2.0]), [f64::INFINITY, 2.0]);
+    assert_eq!(raised(110.5, 1.0, 3, [1.0, 1.0]), [1.0, 2.0]);
+    assert_eq!(raised(115.0, 0.0, 9, [0.0, 0.0]), [0.0, 0.0]);
+    assert_eq!(raised(115.5, 1.0, 3, [1.0, 1.0]), [1.0, 1.0]);
 }
 
 #[test]
