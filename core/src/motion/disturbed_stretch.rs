@@ -3,8 +3,8 @@
 use super::contact_state::ContactState;
 use super::propagator::{Equations, Propagators, Reach};
 use super::transition::Transition;
-use faer::linalg::matmul::matmul;
-use faer::{Accum, Mat, Par};
+use crate::solve::multiply;
+use faer::{Accum, Mat};
 
 impl Transition<'_> {
     /// Takes disturbances, column by column, over a duration \[s\], or nearly so; the duration that is left,
@@ -123,7 +123,7 @@ impl Transition<'_> {
             }
         }
         let mut stiffness = Mat::<f64>::zeros(modes, modes);
-        matmul(stiffness.as_mut(), Accum::Replace, input.as_ref(), moves.as_ref(), -1.0, Par::Seq);
+        multiply(stiffness.as_mut(), Accum::Replace, input.as_ref(), moves.as_ref(), -1.0);
         for &(point, slope) in &springs.pressing {
             let shape = system.contact_shape(point);
             for (j, b) in shape.iter().enumerate() {

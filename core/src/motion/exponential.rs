@@ -1,8 +1,8 @@
 //! The exponential of a matrix, by products of whatever stands for it and its functions; and of one whose last
 //! rows are zeros.
 
-use faer::linalg::matmul::matmul;
-use faer::{Accum, Mat, MatRef, Par};
+use crate::solve::multiply;
+use faer::{Accum, Mat, MatRef};
 
 /// Size of a matrix up to which the polynomials of degree 8 and 18 are exact to rounding.
 const REACH: [f64; 2] = [0.0499, 1.09];
@@ -84,8 +84,8 @@ impl Driven {
         let size = states.nrows();
         out.resize_with(size, states.ncols(), |_, _| 0.0);
         let (own, driven) = (self.rows.get(.., ..size), self.rows.get(.., size..));
-        matmul(out.as_mut(), Accum::Replace, own, states, 1.0, Par::Seq);
-        matmul(out.as_mut(), Accum::Add, driven, inputs, 1.0, Par::Seq);
+        multiply(out.as_mut(), Accum::Replace, own, states, 1.0);
+        multiply(out.as_mut(), Accum::Add, driven, inputs, 1.0);
     }
 }
 
@@ -94,7 +94,7 @@ impl Function for Driven {
         let size = self.rows.nrows();
         let mut rows = Mat::zeros(size, self.rows.ncols());
         let own = self.rows.get(.., ..size);
-        matmul(rows.as_mut(), Accum::Replace, own, other.rows.as_ref(), 1.0, Par::Seq);
+        multiply(rows.as_mut(), Accum::Replace, own, other.rows.as_ref(), 1.0);
         if other.kept != 0.0 {
             for j in size..rows.ncols() {
                 let out = rows.col_as_slice_mut(j).iter_mut();

@@ -15,8 +15,8 @@ use super::linear_phase::LinearPhase;
 use super::propagator::Propagators;
 use super::quadrature::nodes_of_waves;
 use super::transition::Transition;
-use faer::linalg::matmul::matmul;
-use faer::{Accum, Mat, Par};
+use crate::solve::multiply;
+use faer::{Accum, Mat};
 
 /// Modes up to which steps are as cheap.
 const FEW: usize = 8;
@@ -146,8 +146,8 @@ impl Transition<'_> {
         }
         let mut shares = Mat::<f64>::zeros(columns, total.ncols());
         let forms = forms.transpose();
-        matmul(shares.as_mut(), Accum::Replace, forms, total.as_ref(), 1.0, Par::Seq);
-        matmul(total.as_mut(), Accum::Add, gains.as_ref(), shares.as_ref(), 1.0, Par::Seq);
+        multiply(shares.as_mut(), Accum::Replace, forms, total.as_ref(), 1.0);
+        multiply(total.as_mut(), Accum::Add, gains.as_ref(), shares.as_ref(), 1.0);
         for at in jump.iter().flat_map(|jump| &jump.vanishing) {
             (0..total.ncols()).for_each(|j| total[(*at, j)] = 0.0);
         }

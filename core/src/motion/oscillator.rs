@@ -16,8 +16,7 @@
 
 use super::damping::Damping;
 use super::exponential::{exponential, sum_of, Driven, Function};
-use crate::solve::scaled_square;
-use faer::linalg::matmul::matmul;
+use crate::solve::{multiply, scaled_square, settle};
 use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::{Accum, Mat, MatRef, Par};
 
@@ -190,14 +189,14 @@ impl Blocks<'_> {
         let mut p = Mat::zeros(size, size);
         (0..size).for_each(|j| p[(j, j)] = at_zero);
         let stiffness = self.of.stiffness.as_ref();
-        matmul(p.as_mut(), Accum::Add, v.as_ref(), stiffness, -1.0, Par::Seq);
+        multiply(p.as_mut(), Accum::Add, v.as_ref(), stiffness, -1.0);
         Self { of: self.of, at_zero, p, q, v }
     }
 }
 
 fn product(one: &Mat<f64>, other: &Mat<f64>) -> Mat<f64> {
     let mut out = Mat::zeros(one.nrows(), other.ncols());
-    matmul(out.as_mut(), Accum::Replace, one.as_ref(), other.as_ref(), 1.0, Par::Seq);
+    multiply(out.as_mut(), Accum::Replace, one.as_ref(), other.as_ref(), 1.0);
     out
 }
 
@@ -206,6 +205,7 @@ fn add_half(half: &mut Mat<f64>, one: &Mat<f64>, other: MatRef<'_, f64>) {
     let [lower, whole] = [BlockStructure::TriangularLower, BlockStructure::Rectangular];
     let one = one.as_ref();
     triangular::matmul(half.as_mut(), lower, Accum::Add, one, whole, other, whole, 1.0, Par::Seq);
+    settle();
 }
 
 /// Completes a symmetric matrix by its lower half.

@@ -10,8 +10,8 @@ use super::modal_system::{dot, ModalSystem};
 use super::polynomial::{self, DEGREE, TRUNCATION};
 use super::sliding::Slide;
 use crate::contact::{Bound, SlipPlane};
-use faer::linalg::matmul::matmul;
-use faer::{Accum, Mat, MatRef, Par};
+use crate::solve::multiply;
+use faer::{Accum, Mat, MatRef};
 
 /// Longest step in units of the fastest rate: beyond it rounding errors of fast modes would grow.
 const LONGEST: f64 = 12.0;
@@ -243,7 +243,7 @@ impl PowerSeries {
             (speed, contacts, slopes),
             (force, forces, powers),
         ] {
-            matmul(to.as_mut(), Accum::Replace, coefficients, by.as_ref(), 1.0, Par::Seq);
+            multiply(to.as_mut(), Accum::Replace, coefficients, by.as_ref(), 1.0);
         }
     }
 

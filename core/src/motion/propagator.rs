@@ -8,9 +8,8 @@ use super::damping::Damping;
 use super::exponential::{exponential, Driven};
 use super::oscillator::Oscillator;
 use super::quadrature::Quadrature;
-use crate::solve::dot;
-use faer::linalg::matmul::matmul;
-use faer::{Accum, Mat, Par};
+use crate::solve::{dot, multiply};
+use faer::{Accum, Mat};
 
 /// Numbers of all exponentials that are kept, and how many of them.
 const ROOM: usize = 1 << 23;
@@ -93,7 +92,7 @@ impl Equations {
     /// Adds the strains of displacements to others, with a sign.
     pub(super) fn add_strains(&self, sign: f64, states: &Mat<f64>, strains: &mut Mat<f64>) {
         let displaced = states.get(..self.scale.len(), ..);
-        matmul(strains.as_mut(), Accum::Add, self.rates.as_ref(), displaced, sign, Par::Seq);
+        multiply(strains.as_mut(), Accum::Add, self.rates.as_ref(), displaced, sign);
     }
 
     /// Derivatives of states, one column each, times a duration.
@@ -111,9 +110,9 @@ impl Equations {
         let (displacement, velocity) = states.split_at_row(self.scale.len());
         let mut lower = out.get_mut(self.scale.len().., ..);
         let (own, minus) = (self.stiffness.as_ref(), -duration);
-        matmul(lower.as_mut(), Accum::Replace, own, displacement, minus, Par::Seq);
+        multiply(lower.as_mut(), Accum::Replace, own, displacement, minus);
         if let Damping::Full(damping) = &self.damping {
-            matmul(lower.as_mut(), Accum::Add, damping.as_ref(), velocity, minus, Par::Seq);
+            multiply(lower.as_mut(), Accum::Add, damping.as_ref(), velocity, minus);
         }
     }
 
@@ -198,7 +197,7 @@ impl Equations {
                 if power == 1.0 {
                     let inputs = inputs.get(.., first..first + count);
                     let driven = term.get_mut(modes.., ..);
-                    matmul(driven, Accum::Add, self.input.as_ref(), inputs, duration, Par::Seq);
+                    multiply(driven, Accum::Add, self.input.as_ref(), inputs, duration);
                 }
                 let (before_it, duration) = (&before, duration / power);
                 let add = AddTerm {

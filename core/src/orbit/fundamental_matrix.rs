@@ -4,8 +4,8 @@
 use super::drift::Drift;
 use super::linear_path::{step, Displacements, Part, PartPath};
 use crate::contact::ReturnMapJacobian;
-use faer::linalg::matmul::matmul;
-use faer::{Accum, Mat, MatMut, MatRef, Par};
+use crate::solve::multiply;
+use faer::{Accum, Mat, MatMut, MatRef};
 use std::f64::consts::TAU;
 
 /// Steps per period of the laws before the march begins: as many as the search for their path took.
@@ -251,7 +251,7 @@ fn product(out: &mut [f64], accum: Accum, size: usize, a: &[f64], b: MatRef<'_, 
     if a.len() * b.ncols() >= LARGE {
         let out = MatMut::from_column_major_slice_mut(out, size, b.ncols());
         let a = MatRef::from_column_major_slice(a, size, b.nrows());
-        return matmul(out, accum, a, b, factor, Par::Seq);
+        return multiply(out, accum, a, b, factor);
     }
     if matches!(accum, Accum::Replace) {
         out.fill(0.0);

@@ -6,9 +6,8 @@ use crate::motion::{
     nodes_of_waves, ContactState, Event, Extremes, FlowEvent, FlowSegment, ModalSystem, Quadrature,
     Turn, Values, ROUNDING,
 };
-use crate::solve::dot;
-use faer::linalg::matmul::matmul;
-use faer::{c64, Accum, Mat, Par};
+use crate::solve::{dot, multiply};
+use faer::{c64, Accum, Mat};
 use std::f64::consts::TAU;
 
 /// Quadrature nodes of a segment in which contacts slip little by little or in a plane, beyond those that the
@@ -159,7 +158,7 @@ impl<'a> Survey<'a> {
         }
         for (to, motion) in sums.iter_mut().zip([&values.displacement, &values.force]) {
             let nodes = waves.transpose();
-            matmul(to.as_mut(), Accum::Add, motion.as_ref(), nodes, 1.0, Par::Seq);
+            multiply(to.as_mut(), Accum::Add, motion.as_ref(), nodes, 1.0);
         }
     }
 

@@ -9,10 +9,9 @@ use super::massless::StuckModes;
 use super::modes::{resonates, RealModes};
 use super::ports::{HarmonicLoad, Ports};
 use super::quasi_static::QuasiStatic;
-use crate::solve::hermitian_eigenvalues;
+use crate::solve::{hermitian_eigenvalues, multiply};
 use crate::Error;
-use faer::linalg::matmul::matmul;
-use faer::{c64, Accum, Mat, MatRef, Par};
+use faer::{c64, Accum, Mat, MatRef};
 use std::sync::OnceLock;
 
 /// Modes of the stuck structure at its contacts. Series of several harmonics are matrices, slots ×
@@ -187,7 +186,7 @@ impl ContactModes {
         let size = self.modes();
         let mut whole =
             Mat::from_fn(size, size, |i, j| if i == j { self.omega_squared[i] } else { 0.0 });
-        matmul(whole.as_mut(), Accum::Add, shapes, carried.transpose(), -1.0, Par::Seq);
+        multiply(whole.as_mut(), Accum::Add, shapes, carried.transpose(), -1.0);
         hermitian_eigenvalues(whole.as_ref()).unwrap_or_default()
     }
 

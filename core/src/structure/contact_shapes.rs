@@ -1,9 +1,9 @@
 //! What coordinates displace at contacts, and what loads on contacts are on coordinates.
 
 use super::matrix::Matrix;
-use faer::linalg::matmul::matmul;
+use crate::solve::multiply;
 use faer::traits::RealField;
-use faer::{Accum, Mat, MatRef, Par};
+use faer::{Accum, Mat, MatRef};
 
 /// Contacts with a load that are gathered at once: their shapes stay in the cache.
 const PANEL: usize = 32;
@@ -112,14 +112,14 @@ pub(super) fn add_forces<T: RealField + Copy>(
 ) {
     let one = T::one_impl();
     if loaded.len() == load.ncols() {
-        return matmul(forces.as_mut(), Accum::Add, contacts, load.transpose(), one, Par::Seq);
+        return multiply(forces.as_mut(), Accum::Add, contacts, load.transpose(), one);
     }
     let mut panel = Mat::zeros(contacts.nrows(), PANEL.min(loaded.len()));
     for own in loaded.chunks(PANEL) {
         gather(contacts, own, &mut panel);
         let loads = Mat::from_fn(own.len(), load.nrows(), |j, i| load[(i, own[j])]);
         let panel = panel.as_ref().subcols(0, own.len());
-        matmul(forces.as_mut(), Accum::Add, panel, loads.as_ref(), one, Par::Seq);
+        multiply(forces.as_mut(), Accum::Add, panel, loads.as_ref(), one);
     }
 }
 
@@ -129,7 +129,7 @@ pub(super) fn displace<T: RealField + Copy>(
     coordinates: MatRef<'_, T>,
 ) -> Mat<T> {
     let mut motion = Mat::zeros(coordinates.nrows(), contacts.ncols());
-    matmul(motion.as_mut(), Accum::Replace, coordinates, contacts, T::one_impl(), Par::Seq);
+    multiply(motion.as_mut(), Accum::Replace, coordinates, contacts, T::one_impl());
     motion
 }
 

@@ -5,9 +5,8 @@ use super::contact_modes::ContactModes;
 use super::contact_shapes::{add_forces, displace, excite, gather, loaded, ContactShapes};
 use super::modal_orders::{Inverse, ModalOrders, Order};
 use super::quasi_static::QuasiStatic;
-use crate::solve::{gmres, KrylovSettings};
+use crate::solve::{gmres, multiply, settle, KrylovSettings};
 use crate::Error;
-use faer::linalg::matmul::matmul;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::linalg::solvers::Solve as _;
 use faer::{c64, Accum, Mat, MatRef, Par};
@@ -49,6 +48,7 @@ impl ContactModes {
                 1.0,
                 Par::Seq,
             );
+            settle();
         }
         for j in 0..size {
             (0..j).for_each(|i| out[(i, j)] = out[(j, i)]);
@@ -157,7 +157,8 @@ impl ContactCoordinates for ContactModes {
                 let own = self.stiffness(j, rate);
                 // Met exactly by a mode that damping only couples: the iteration sees to the rest.
                 let least = FLOOR * rate * rate;
-                if own.norm() < least { c64::new(0.0, least) } else { own }.inv()
+                let meets = own.norm_sqr() < least * least;
+                if meets { c64::new(0.0, least) } else { own }.inv()
             });
             let inverse = Inverse::Diagonal(inverse.collect());
             orders.push(Order { harmonic: order, slot, rate, inverse });
@@ -200,7 +201,7 @@ impl ContactCoordinates for ContactModes {
             add_forces(shapes, load, &loaded, &mut forces);
             let mut motion = forces.transpose().to_owned();
             at.divide_part(&mut motion, first);
-            matmul(out.as_mut(), Accum::Add, motion.as_ref(), shapes, 1.0, Par::Seq);
+            multiply(out.as_mut(), Accum::Add, motion.as_ref(), shapes, 1.0);
         }
         out
     }
@@ -217,7 +218,7 @@ impl ContactCoordinates for ContactModes {
         let product = |v: &[f64], out: &mut [f64]| {
             let mut y = column_major(v);
             at.divide(&mut y);
-            matmul(work.as_mut(), Accum::Replace, y.as_ref(), coupling.as_ref(), 1.0, Par::Seq);
+            multiply(work.as_mut(), Accum::Replace, y.as_ref(), coupling.as_ref(), 1.0);
             out.copy_from_slice(v);
             for (j, out) in out.chunks_exact_mut(slots).enumerate() {
                 for &Order { slot, rate, .. } in at.orders.iter().filter(|own| own.rate > 0.0) {

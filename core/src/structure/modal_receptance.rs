@@ -7,13 +7,10 @@ use super::modes::resonates;
 use super::restraint::{restrain, FEW};
 use super::spectrum::Spectrum;
 use super::{within, Compliance, Outline, Quantity, Receptance, Request};
+use crate::solve::multiply;
 use crate::Error;
-use faer::linalg::matmul::matmul;
-use faer::{c64, Accum, ColMut, Mat, MatMut, Par};
+use faer::{c64, Accum, ColMut, Mat, MatMut};
 use std::ops::Range;
-
-/// Observed degrees of freedom that a product of matrices displaces.
-const MANY: usize = 32;
 
 /// The range of degrees of freedom that follow one another.
 fn consecutive(observe: &[usize]) -> Option<Range<usize>> {
@@ -23,12 +20,21 @@ fn consecutive(observe: &[usize]) -> Option<Range<usize>> {
 }
 
 impl ModalCompliance {
-    /// Weight of a mode at `omega` and its derivative in ω.
-    fn weight(&self, j: usize, omega: f64) -> (c64, c64) {
+    /// Weight of a mode at `omega`.
+    fn weight(&self, j: usize, omega: f64) -> c64 {
         if j + self.statics < self.right.ncols() {
             self.spectrum.weight(j, omega)
         } else {
-            (c64::new(1.0, 0.0), c64::new(0.0, 0.0))
+            c64::new(1.0, 0.0)
+        }
+    }
+
+    /// Its derivative in the frequency whose multiple `order` is met.
+    fn slope(&self, j: usize, (order, omega): (f64, f64), weight: c64) -> c64 {
+        if j + self.statics < self.right.ncols() {
+            order * self.spectrum.slope(j, order * omega, weight)
+        } else {
+            c64::new(0.0, 0.0)
         }
     }
 
@@ -49,6 +55,10 @@ impl ModalCompliance {
         let squared = (harmonic as f64 * omega).powi(2);
         for (j, (&natural, &c)) in omega_squared.iter().zip(damping).enumerate() {
             let distance = (natural - squared).abs() + harmonic as f64 * omega * c.abs();
+            // Hardly any mode is so close.
+            if !resonates(distance, squared, false) {
+                continue;
+            }
             let moved =
                 (0..self.contact_left.nrows()).any(|i| self.contact_left[(i, j)].norm() > 0.0);
             let loaded = || self.load(harmonic).is_some_and(|load| load[j].norm() > 0.0);
@@ -83,8 +93,8 @@ impl ModalCompliance {
             self.multiply_modes(points, (order, omega), out);
         }
         for j in 0..self.right.ncols() {
-            let (weight, slope) = self.weight(j, order * omega);
-            let slope = order * slope;
+            let weight = self.weight(j, order * omega);
+            let slope = || self.slope(j, (order, omega), weight);
             let [left, right] =
                 [&self.contact_left, &self.contact_right].map(|c| c.col_as_slice(j));
             let add = |to: &mut [c64], factor: c64| {
@@ -96,7 +106,7 @@ impl ModalCompliance {
             if !by_products {
                 add(&mut out.contact, weight);
                 if let Some((contact, _)) = &mut out.slope {
-                    add(contact, slope);
+                    add(contact, slope());
                 }
                 if let Some(negative) = self.negative.get(j) {
                     let change = weight * weight * c64::new(0.0, -order * omega * negative);
@@ -108,33 +118,40 @@ impl ModalCompliance {
                 let response = right[row] * load[j];
                 out.stuck[row] += response * weight;
                 if let Some((_, stuck)) = &mut out.slope {
-                    stuck[row] += response * slope;
+                    stuck[row] += response * slope();
                 }
             }
         }
     }
 
-    /// Coordinates of the modes at a harmonic above 0.
-    fn write_coordinates(&self, request: &Request<'_>, out: ColMut<'_, c64>) {
+    /// Coordinates of the modes at a harmonic above 0; `acting` makes room for forces.
+    fn write_coordinates(
+        &self,
+        request: &Request<'_>,
+        acting: &mut Vec<(usize, c64)>,
+        out: ColMut<'_, c64>,
+    ) {
         let Request { harmonic, omega, quantity, contact, slip_load, .. } = *request;
         let (loaded, sloped) = (quantity != Quantity::OfSlip, quantity == Quantity::Slope);
         // The free structure carries the whole contact force, the stuck one the slip load alone.
-        let mut forces = slip_load.to_vec();
-        if let Some(stiffness) = &self.restraint {
-            for (i, force) in forces.iter_mut().enumerate() {
-                *force -= (0..contact.len()).map(|j| stiffness[(i, j)] * contact[j]).sum::<c64>();
+        let force = |i: usize| match &self.restraint {
+            Some(stiffness) => {
+                let held = contact.iter().enumerate().map(|(j, u)| stiffness[(i, j)] * u);
+                slip_load[i] - held.sum::<c64>()
             }
-        }
-        let acting = forces.iter().enumerate().filter(|(_, force)| **force != c64::new(0.0, 0.0));
-        let acting: Vec<_> = acting.collect();
+            None => slip_load[i],
+        };
+        let forces = (0..contact.len()).map(|i| (i, force(i)));
+        acting.clear();
+        acting.extend(forces.filter(|(_, force)| *force != c64::new(0.0, 0.0)));
         let (order, load) = (harmonic as f64, self.load(harmonic).filter(|_| loaded));
         for (j, coordinate) in out.iter_mut().enumerate() {
             let left = self.contact_left.col_as_slice(j);
             let mut excitation = load.map_or(c64::new(0.0, 0.0), |load| load[j]);
             acting.iter().for_each(|(i, force)| excitation += left[*i] * *force);
-            let (weight, slope) = self.weight(j, order * omega);
-            let weight = if sloped { order * slope } else { weight };
-            *coordinate = weight * excitation;
+            let weight = self.weight(j, order * omega);
+            let slope = || self.slope(j, (order, omega), weight);
+            *coordinate = excitation * if sloped { slope() } else { weight };
         }
     }
 
@@ -150,8 +167,8 @@ impl ModalCompliance {
         let point = |at: usize| points.map_or(at, |points| points[at]);
         let weights: Vec<[c64; 2]> = (0..modes)
             .map(|j| {
-                let (weight, slope) = self.weight(j, order * omega);
-                [weight, order * slope]
+                let weight = self.weight(j, order * omega);
+                [weight, self.slope(j, (order, omega), weight)]
             })
             .collect();
         let slope = out.slope.as_mut().map(|(contact, _)| contact);
@@ -161,7 +178,7 @@ impl ModalCompliance {
             });
             let sum = MatMut::from_column_major_slice_mut(sum, contacts, columns);
             let (right, one) = (self.contact_right.as_ref(), c64::new(1.0, 0.0));
-            matmul(sum, Accum::Replace, right, left.as_ref(), one, Par::Seq);
+            multiply(sum, Accum::Replace, right, left.as_ref(), one);
         }
     }
 }
@@ -242,13 +259,14 @@ impl Compliance for ModalCompliance {
         }
         let modes = self.right.ncols();
         let mut coordinates = Mat::zeros(modes, requests.len());
+        let mut acting = Vec::with_capacity(self.contacts());
         for (column, request) in coordinates.col_iter_mut().zip(requests) {
-            self.write_coordinates(request, column);
+            self.write_coordinates(request, &mut acting, column);
         }
-        if let Some(rows) = consecutive(observe).filter(|rows| rows.len() >= MANY) {
+        if let Some(rows) = consecutive(observe) {
             let (shapes, one) = (self.right.get(rows, ..), c64::new(1.0, 0.0));
             let out = MatMut::from_column_major_slice_mut(out, shapes.nrows(), requests.len());
-            matmul(out, Accum::Replace, shapes, coordinates.as_ref(), one, Par::Seq);
+            multiply(out, Accum::Replace, shapes, coordinates.as_ref(), one);
             return Ok(());
         }
         for (own, out) in coordinates.col_iter().zip(out.chunks_exact_mut(observe.len().max(1))) {
@@ -291,7 +309,7 @@ impl Compliance for ModalCompliance {
         // A factorisation and as many solutions as there are points.
         let restraint = contacts.powi(2) * (factor * contacts + answer * points);
         let restraint = if restrained { restraint } else { 0.0 };
-        let each = if observed >= MANY { 0.2 } else { 1.2 };
+        let each = if observed >= 32 { 0.2 } else { 1.2 };
         let displacement = modes * (25.0 + 1.5 * acting + each * observed as f64);
         [modes * (own + pair * contacts * loaded) + restraint, displacement]
     }

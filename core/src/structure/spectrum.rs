@@ -19,8 +19,8 @@ pub(super) enum Spectrum {
 }
 
 impl Spectrum {
-    /// Weight of mode j at `omega` and its derivative in ω.
-    pub(super) fn weight(&self, j: usize, omega: f64) -> (c64, c64) {
+    /// Weight of mode j at `omega`.
+    pub(super) fn weight(&self, j: usize, omega: f64) -> c64 {
         match self {
             Self::Real { omega_squared, damping, floors } => {
                 let squared = omega * omega;
@@ -28,22 +28,27 @@ impl Spectrum {
                 // An undamped mode of the free base met exactly is no resonance of the stuck
                 // structure, but leaves 0/0. A floor ε on the denominator costs a relative error ε
                 // and a cancellation 1e-16/ε: least at the square root of rounding.
-                if denominator.norm() < floors[j] * squared {
-                    denominator = c64::new(0.0, floors[j] * squared);
+                let floor = floors[j] * squared;
+                if denominator.norm_sqr() < floor * floor {
+                    denominator = c64::new(0.0, floor);
                 }
                 if denominator == c64::new(0.0, 0.0) {
                     // Neither a load nor a contact moves such a mode: others are refused before.
-                    return (denominator, denominator);
+                    return denominator;
                 }
-                let weight = denominator.inv();
-                let slope = weight * weight * c64::new(2.0 * omega, -damping[j]);
-                (weight, slope)
+                denominator.inv()
             }
-            Self::Complex { poles } => {
-                let weight = (c64::new(0.0, omega) - poles[j]).inv();
-                (weight, weight * weight * c64::new(0.0, -1.0))
-            }
+            Self::Complex { poles } => (c64::new(0.0, omega) - poles[j]).inv(),
         }
+    }
+
+    /// Derivative in ω of such a weight.
+    pub(super) fn slope(&self, j: usize, omega: f64, weight: c64) -> c64 {
+        let of_denominator = match self {
+            Self::Real { damping, .. } => c64::new(2.0 * omega, -damping[j]),
+            Self::Complex { .. } => c64::new(0.0, -1.0),
+        };
+        weight * weight * of_denominator
     }
 
     pub(super) fn narrowest_bandwidth(&self) -> f64 {

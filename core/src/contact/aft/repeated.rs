@@ -10,8 +10,8 @@ use super::rate::Rate;
 use super::restart::Restart;
 use super::samples::Samples;
 use crate::contact::{Aft, ContactLaw};
-use faer::linalg::matmul::matmul;
-use faer::{Accum, Mat, MatMut, MatRef, Par};
+use crate::solve::multiply;
+use faer::{Accum, Mat, MatMut, MatRef};
 use std::ops::Deref;
 
 /// Outer products that are summed at once: a tangent is passed through once for all of them.
@@ -115,7 +115,7 @@ impl Products {
                 let own = MatMut::from_column_major_slice_mut(own, size, slots);
                 let rows = MatRef::from_column_major_slice(rows, size, held);
                 let sums = MatRef::from_column_major_slice(&self.sums, slots, held);
-                matmul(own, Accum::Add, rows, sums.transpose(), 1.0, Par::Seq);
+                multiply(own, Accum::Add, rows, sums.transpose(), 1.0);
             }
             rows.clear();
         }

@@ -6,8 +6,8 @@
 use super::collocation::{Collocation, Lanes, NODES};
 use super::drive::Drive;
 use super::panel::{product, Panel};
-use faer::linalg::matmul::matmul;
-use faer::{Accum, Mat, Par};
+use crate::solve::multiply;
+use faer::{Accum, Mat};
 use pulp::{Arch, Simd, WithSimd};
 
 /// Columns of a product that share its factors.
@@ -55,7 +55,7 @@ impl RateIntegrals {
     fn sum_up(&mut self) {
         let basis = self.basis.get(..self.nodes, ..).transpose();
         let traction = self.traction.get(..self.nodes, ..);
-        matmul(self.sums.as_mut(), Accum::Add, basis, traction, 1.0, Par::Seq);
+        multiply(self.sums.as_mut(), Accum::Add, basis, traction, 1.0);
         self.nodes = 0;
     }
 

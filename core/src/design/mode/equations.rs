@@ -13,10 +13,9 @@ use crate::balance::Progress;
 use crate::contact::{Motion, Residual, SlipLoad};
 use crate::fourier::{Harmonics, SampleTable};
 use crate::model::{ModalBases, ModalBasis, Model};
-use crate::solve::norm;
+use crate::solve::{multiply, norm};
 use crate::timing::Profile;
-use faer::linalg::matmul::matmul;
-use faer::{Accum, ColRef, MatMut, MatRef, Par};
+use faer::{Accum, ColRef, MatMut, MatRef};
 use std::cell::Cell;
 use std::sync::Arc;
 use std::time::Instant;
@@ -184,7 +183,7 @@ impl<'a> ModeEquations<'a> {
                 slots,
             );
             let moved = MatMut::from_row_major_slice_mut(&mut out, points, slots);
-            matmul(moved, Accum::Replace, shapes, amplitudes, factor, Par::Seq);
+            multiply(moved, Accum::Replace, shapes, amplitudes, factor);
             if whole && self.harmonics().has_mean() {
                 let rest = shapes * ColRef::from_slice(&self.rest);
                 out.iter_mut().step_by(slots).zip(rest.iter()).for_each(|(u, rest)| *u += rest);
@@ -216,7 +215,7 @@ impl<'a> ModeEquations<'a> {
             let size = shapes.ncols() * slots;
             let rows =
                 MatMut::from_column_major_slice_mut(&mut rows[..size], shapes.ncols(), slots);
-            return matmul(rows, Accum::Add, shapes.transpose(), load, -share, Par::Seq);
+            return multiply(rows, Accum::Add, shapes.transpose(), load, -share);
         }
         for order in self.harmonics().orders() {
             let Some(slot) = self.harmonics().slot(order) else { continue };
