@@ -4,7 +4,7 @@ use super::evaluation::Evaluated;
 use super::linear::{Factor, Linear};
 use super::modal_work::{is_large, ByProducts};
 use super::solution::{Point, PointStatus};
-use super::unknowns::gather;
+use super::unknowns::gather_all;
 use crate::contact::{ContactLaw, Motion, PointSummary, Residual, SlipLoad};
 use crate::fourier::{Harmonics, SampleTable};
 use crate::structure::{Quantity, Request};
@@ -167,15 +167,11 @@ impl<'a> Condensed<'a> {
     ) -> Result<(), Error> {
         let (harmonics, omega) = (self.table.harmonics(), self.omega);
         let compliance = self.model.compliance();
-        let amplitudes = |harmonic: usize| {
-            [x, slip_load].map(|series| {
-                let mut own = Vec::new();
-                gather(harmonics, harmonic, series, &mut own);
-                own
-            })
-        };
-        let loads: Vec<_> = harmonics.orders().map(amplitudes).collect();
-        let requests = harmonics.orders().zip(&loads).map(|(harmonic, [contact, slip_load])| {
+        let contacts = compliance.contacts();
+        let loads = [x, slip_load].map(|series| gather_all(harmonics, series));
+        let requests = harmonics.orders().enumerate().map(|(index, harmonic)| {
+            let own = index * contacts..(index + 1) * contacts;
+            let (contact, slip_load) = (&loads[0][own.clone()], &loads[1][own]);
             Request { harmonic, omega, quantity, contact, slip_load, observe }
         });
         let requests: Vec<_> = requests.collect();

@@ -121,7 +121,9 @@ impl<'a> ForcedBalance<'a> {
                 break;
             }
             let residual = self.settings.residual;
-            let more = resonances::answer(&model, residual, &solution, self.observe, point, order);
+            let table = self.coarse_table(harmonics.highest(), order);
+            let observe = self.observe;
+            let more = resonances::answer(&model, &table, residual, &solution, observe, point);
             errors.iter_mut().zip(more).for_each(|(error, more)| *error += more);
         }
         point.error_estimate = errors;
@@ -218,7 +220,7 @@ impl<'a> ForcedBalance<'a> {
     ) -> Result<Option<Estimate>, Error> {
         let (model, order) = self.resolving(point, extension.highest)?;
         let extension = extension.within(order);
-        let table = self.coarse_table(order);
+        let table = self.coarse_table(order, order);
         let residual = self.settings.residual;
         let ask = self.interruption();
         let observe = self.observe;

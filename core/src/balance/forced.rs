@@ -59,13 +59,13 @@ pub struct ForcedBalance<'a> {
     pub(super) account: Account,
 }
 
-/// Sample tables by highest harmonic.
+/// Sample tables by harmonics.
 #[derive(Default)]
 struct Tables {
-    /// Of solutions.
+    /// Of solutions, by the highest one.
     fine: BTreeMap<usize, Arc<SampleTable>>,
-    /// Of error estimates.
-    coarse: BTreeMap<usize, Arc<SampleTable>>,
+    /// Of error estimates, by that of motions and the highest one.
+    coarse: BTreeMap<[usize; 2], Arc<SampleTable>>,
 }
 
 /// What passes from one balance to the next: sample tables, the level that automatic harmonics and
@@ -247,11 +247,11 @@ impl<'a> ForcedBalance<'a> {
         Arc::clone(self.tables.fine.entry(highest).or_insert_with(table))
     }
 
-    /// The table of an error estimate.
-    pub(super) fn coarse_table(&mut self, highest: usize) -> Arc<SampleTable> {
-        let half_wave = self.half_wave;
-        let table = || Arc::new(SampleTable::coarse(Harmonics::new(highest, half_wave)));
-        Arc::clone(self.tables.coarse.entry(highest).or_insert_with(table))
+    /// The table of an error estimate, of motions up to the harmonic `resolved`.
+    pub(super) fn coarse_table(&mut self, resolved: usize, highest: usize) -> Arc<SampleTable> {
+        let harmonics = || Harmonics::new(highest, self.half_wave);
+        let table = || Arc::new(SampleTable::coarse_up_to(resolved, harmonics()));
+        Arc::clone(self.tables.coarse.entry([resolved, highest]).or_insert_with(table))
     }
 
     /// The model as it is evaluated with some samples per period, or with none.

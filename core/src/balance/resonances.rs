@@ -63,16 +63,17 @@ impl Resonances {
     }
 }
 
-/// What a harmonic that a solution discards would bring to each observed DOF \[m\]; infinite at a resonance that nothing
-/// damps.
+/// What the highest harmonic of a table, which a solution discards, would bring to each observed DOF \[m\]; infinite at
+/// a resonance that nothing damps.
 pub(super) fn answer(
     model: &Model,
+    table: &SampleTable,
     residual: Residual,
     solution: &Unknowns,
     observe: &[usize],
     point: &Point,
-    harmonic: usize,
 ) -> Vec<f64> {
+    let harmonic = table.harmonics().highest();
     let (compliance, omega) = (model.compliance(), point.omega);
     let (contacts, points) = (compliance.contacts(), loaded_points(model, point));
     let mut receptance = Receptance::default();
@@ -81,7 +82,7 @@ pub(super) fn answer(
     }
     let all = Mat::from_fn(contacts, points.len(), |i, j| receptance.contact[j * contacts + i]);
     let own = Mat::from_fn(points.len(), points.len(), |i, j| all[(points[i], j)]);
-    let (load, tangent) = friction(model, residual, solution, &points, harmonic);
+    let (load, tangent) = friction(model, table, residual, solution, &points);
     let equations = Mat::<c64>::identity(points.len(), points.len()) - &own * &tangent;
     let motion = equations.partial_piv_lu().solve(&own * &load);
     let load = load + tangent * motion;
@@ -107,18 +108,15 @@ pub(super) fn loaded_points(model: &Model, point: &Point) -> Vec<usize> {
     loaded.flat_map(Range::clone).collect()
 }
 
-/// Slip loads at a harmonic that a solution discards, and their derivative in the motion at this harmonic, of the contacts
+/// Slip loads at the highest harmonic of a table, and their derivative in the motion at this harmonic, of the contacts
 /// that some points belong to.
 fn friction(
     model: &Model,
+    table: &SampleTable,
     residual: Residual,
     solution: &Unknowns,
     points: &[usize],
-    harmonic: usize,
 ) -> (Mat<c64>, Mat<c64>) {
-    let kept = &solution.harmonics;
-    let table =
-        SampleTable::coarse_up_to(kept.highest(), Harmonics::new(harmonic, kept.half_wave()));
     let slots = table.harmonics().slots();
     // The highest harmonic is last.
     let slot = slots - 2;
@@ -131,7 +129,7 @@ fn friction(
         let mut all = Mat::zeros(points.len(), 1);
         for (law, own, place) in &loaded {
             let displacement = &x[own.start * slots..own.end * slots];
-            law.slip_load(Motion { table: &table, displacement, residual }, false, &mut load);
+            law.slip_load(Motion { table, displacement, residual }, false, &mut load);
             for (row, series) in load.value.chunks_exact(slots).enumerate() {
                 all[(place + row, 0)] = c64::new(series[slot], -series[slot + 1]);
             }
@@ -188,7 +186,8 @@ mod tests {
             let solution = Unknowns::new(Harmonics::new(3, half_wave), values);
             let residual = Residual::Centred;
             for order in [5, 31, 63, 69, 127, 191] {
-                let (load, tangent) = friction(&model, residual, &solution, &[0], order);
+                let table = SampleTable::coarse_up_to(3, Harmonics::new(order, half_wave));
+                let (load, tangent) = friction(&model, &table, residual, &solution, &[0]);
                 let table = SampleTable::new(Harmonics::new(order, half_wave));
                 let displacement = &solution.recast(table.harmonics())[..];
                 let motion = Motion { table: &table, displacement, residual };
@@ -215,7 +214,8 @@ mod tests {
         let contacts = (0..2).map(|at| Contact { law: law.clone(), rows: rows(at) }).collect();
         let model = Model::new(structure, contacts, Vec::new()).unwrap();
         let solution = Unknowns::new(Harmonics::new(1, true), vec![0.9, 0.2, 0.0, 0.0]);
-        let (load, tangent) = friction(&model, Residual::Centred, &solution, &[0, 1], 31);
+        let table = SampleTable::coarse_up_to(1, Harmonics::new(31, true));
+        let (load, tangent) = friction(&model, &table, Residual::Centred, &solution, &[0, 1]);
         assert!(load[(0, 0)].norm() > 0.0 && tangent[(0, 0)].norm() > 0.0);
         assert_eq!((load[(1, 0)].norm(), tangent[(1, 1)].norm()), (0.0, 0.0));
     }

@@ -114,9 +114,11 @@ impl SmoothPiece {
         }
         let size = |errors: &[f64]| errors.iter().sum::<f64>();
         let goes_on = |[before, now]: [f64; 2]| (now / before).powf(share);
+        // Powers of each take most of the time.
+        let of_one = CHANGE_OF_ONE.powf(1.0 / share);
         let largest = errors.iter().chain(&last.errors).copied().fold(0.0, f64::max);
         let smooth = errors.iter().zip(&last.errors).all(|(&before, &now)| {
-            before.max(now) < COUNTS * largest || is_within(goes_on([before, now]), CHANGE_OF_ONE)
+            before.max(now) < COUNTS * largest || is_within(now / before, of_one)
         });
         if !(smooth
             && is_within(goes_on([size(errors), size(&last.errors)]), CHANGE)
@@ -132,9 +134,8 @@ impl SmoothPiece {
         let both = errors.iter().zip(&last.errors);
         let estimates = both.map(|(&before, &now)| {
             // What falls may rise again.
-            let growth = goes_on([before, now]);
-            if growth > 1.0 {
-                now * growth.min(CHANGE)
+            if now > before {
+                now * goes_on([before, now]).min(CHANGE)
             } else {
                 now
             }

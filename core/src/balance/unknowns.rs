@@ -67,6 +67,17 @@ pub fn scatter(harmonics: &Harmonics, order: usize, amplitudes: &[c64], out: &mu
 /// Reads the complex amplitudes of all points at one order from a real layout.
 pub fn gather(harmonics: &Harmonics, order: usize, series: &[f64], out: &mut Vec<c64>) {
     out.clear();
+    append(harmonics, order, series, out);
+}
+
+/// Those at all orders, one after the other.
+pub(super) fn gather_all(harmonics: &Harmonics, series: &[f64]) -> Vec<c64> {
+    let mut all = Vec::with_capacity(series.len());
+    harmonics.orders().for_each(|order| append(harmonics, order, series, &mut all));
+    all
+}
+
+fn append(harmonics: &Harmonics, order: usize, series: &[f64], out: &mut Vec<c64>) {
     let slots = harmonics.slots();
     let Some(slot) = harmonics.slot(order) else { return };
     out.extend(series.chunks_exact(slots).map(|point| {
