@@ -221,11 +221,16 @@ def test_estimates_along_a_curve_are_those_of_its_frequencies(harmonics: int) ->
     ):
         curve = ss.forced_response(model, omega, harmonics)
         alone = [ss.forced_response(model, [one], harmonics) for one in omega]
+        true = ss.forced_response(model, omega, 61)
         for dof in curve.dofs[:4]:
             own = np.array([one.error_estimate(dof)[0] for one in alone])
             slips = own > 0.0
-            ratio = curve.error_estimate(dof)[slips] / own[slips]
-            assert ratio.min() > 0.4
+            estimate = curve.error_estimate(dof)[slips]
+            ratio = estimate / own[slips]
+            # By itself a second step may overshoot: what is less is not below the error.
+            error = true.coefficients(dof)[slips].copy()
+            error[:, : harmonics + 1] -= curve.coefficients(dof)[slips]
+            assert ((ratio > 0.4) | (estimate >= np.abs(error).sum(axis=1))).all()
             assert ratio.max() < 2.5
             assert np.median(ratio) == pytest.approx(1.0, abs=0.1)
 

@@ -153,8 +153,9 @@ impl Extension {
             let most = (RESERVED * budget(order)).min(budget(first) - account(first).of(true));
             Resonances::beyond(order, most, effort, kept, omega).effort
         };
-        let single = farthest(0.0).map_or(0.0, reserved);
-        let farthest = farthest(single);
+        let all = farthest(0.0);
+        let single = all.map_or(0.0, reserved);
+        let farthest = if single > 0.0 { farthest(single) } else { all };
         let order = farthest.unwrap_or(first);
         // Friction forces have kinks: their harmonics fall with the square of the order.
         let sum = |to: usize| 1.0 / first as f64 - 1.0 / (to + least) as f64;

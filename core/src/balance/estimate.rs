@@ -94,9 +94,6 @@ impl<'a> ForcedBalance<'a> {
         point.error_estimate = vec![0.0; self.observe.len()];
         point.sampling_error = vec![0.0; self.observe.len()];
         let slipping = self.nonlinear_points(point);
-        if slipping == 0 || solved.is_some_and(|solved| leaves_springs(solved, x)) {
-            return Ok(true);
-        }
         let (half_wave, observed) = (harmonics.half_wave(), self.observe.len());
         let given = self.evaluated(None)?;
         let effort = Effort::new(&given, half_wave, slipping, observed);
@@ -105,6 +102,10 @@ impl<'a> ForcedBalance<'a> {
         let fixed = self.control.is_fixed();
         let counts = fixed && solved.is_none_or(|solved| !solved.slopes);
         let earned = counts.then(|| effort.earned(harmonics.highest()));
+        if slipping == 0 || solved.is_some_and(|solved| leaves_springs(solved, x)) {
+            self.neighbour.save(point, earned);
+            return Ok(true);
+        }
         let credit = self.neighbour.credit(point, earned);
         let whole = Extension::new(&effort, harmonics, point.omega, credit);
         let solution = Unknowns { harmonics: harmonics.clone(), values: x.to_vec() };

@@ -44,8 +44,9 @@ fn an_extended_balance_reaches_as_far_as_the_solution_allows() {
 fn estimates_beside_each_other_take_what_solutions_leave() {
     let at = |omega: f64| Point::empty(omega, PointStatus::Converged, 1, 1);
     let mut neighbour = Neighbour::default();
-    // The first estimate follows from the model and the solution alone, …
-    assert!(neighbour.credit(&at(100.0), Some(5.0)).is_infinite());
+    // The first two estimates follow from the model and the solution alone, …
+    assert!(neighbour.credit(&at(99.0), Some(2.0)).is_infinite());
+    assert!(neighbour.credit(&at(100.0), Some(3.0)).is_infinite());
     neighbour.pay(3.0);
     assert!((neighbour.credit(&at(101.0), Some(4.0)) - 6.0).abs() < 1e-12);
     // … and a dear one leaves no debts.
@@ -54,6 +55,19 @@ fn estimates_beside_each_other_take_what_solutions_leave() {
     assert!(neighbour.credit(&at(110.0), Some(4.0)).is_infinite());
     assert!(neighbour.credit(&at(110.5), None).is_infinite());
     assert!(neighbour.credit(&at(111.0), Some(4.0)).is_infinite());
+    assert!(neighbour.credit(&at(111.5), Some(4.0)).is_infinite());
+    assert!((neighbour.credit(&at(112.0), Some(4.0)) - 12.0).abs() < 1e-12);
+    // Points without slip leave all that they earn to those behind them, …
+    neighbour.pay(12.0);
+    neighbour.save(&at(113.0), Some(3.0));
+    assert!(neighbour.credit(&at(114.0), Some(4.0)).is_infinite());
+    assert!(neighbour.credit(&at(115.0), Some(4.0)).is_infinite());
+    assert!((neighbour.credit(&at(116.0), Some(4.0)) - 15.0).abs() < 1e-12);
+    // … but not far away.
+    neighbour.save(&at(130.0), Some(3.0));
+    assert!(neighbour.credit(&at(131.0), Some(4.0)).is_infinite());
+    assert!(neighbour.credit(&at(132.0), Some(4.0)).is_infinite());
+    assert!((neighbour.credit(&at(133.0), Some(4.0)) - 15.0).abs() < 1e-12);
 }
 
 #[test]

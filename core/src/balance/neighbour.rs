@@ -5,8 +5,9 @@
 //! curve: what was found at one point holds for a few after it, as long as the first step makes no contact
 //! begin or cease to slip. Where the motion but for its phase hardly changes, and no discarded harmonic
 //! comes to a mode, the estimate itself goes on as it did between the two points before. What solutions take and
-//! estimates do not adds up, so that estimates cost no more than solutions along the curve as a whole. Where this allows
-//! few harmonics only, an estimate is at least that of more harmonics at a point beside: the motion is about the same.
+//! estimates do not adds up, also where nothing slips, so that estimates cost no more than solutions along the curve as a
+//! whole, and the first points that slip can be followed far. Where this allows few harmonics only, an estimate is at least
+//! that of more harmonics at a point beside: the motion is about the same.
 
 use super::smooth_piece::{Estimated, SmoothPiece};
 use super::solution::Point;
@@ -17,6 +18,8 @@ use crate::contact::Repeated;
 const NEAR: f64 = 0.02;
 /// Points in a row that the second step at one before them serves, and where to begin.
 const SERVED: usize = 7;
+/// Points at which slip begins, on which the estimates of the others lean: they are judged as one by itself.
+const LEADING: usize = 2;
 
 /// What fewer harmonics make of an extrapolation.
 pub(super) enum Rough {
@@ -68,9 +71,10 @@ pub(super) struct Neighbour {
     growth: Vec<f64>,
     /// The last estimate that had more harmonics than those after it.
     far: Far,
-    /// The last frequency with a slipping contact, and what the solutions so far allow the estimates after it,
-    /// in reckoned nanoseconds.
+    /// The last frequency, and what the solutions so far allow the estimates after it, in reckoned nanoseconds.
     account: Option<(f64, f64)>,
+    /// How many points with slip in a row end there.
+    slips: usize,
     /// States that marches of the contacts have repeated: those at the next point begin with them.
     pub(super) states: Vec<Option<Repeated>>,
     pub(super) piece: SmoothPiece,
@@ -100,16 +104,26 @@ impl Neighbour {
     }
 
     /// What the estimate of a point may take, whose solution has `earned` so much: without a limit where its
-    /// solution began far away, or where nobody knows what it took.
+    /// solution began far away, where slip begins, and where nobody knows what it took.
     pub(super) fn credit(&mut self, point: &Point, earned: Option<f64>) -> f64 {
+        let before = if self.earn(point, earned) { self.slips } else { 0 };
+        self.slips = before + 1;
+        let limited = self.account.filter(|_| before >= LEADING);
+        limited.map_or(f64::INFINITY, |(_, credit)| credit)
+    }
+
+    /// The solution of a point without slip, which takes no estimate, has earned so much.
+    pub(super) fn save(&mut self, point: &Point, earned: Option<f64>) {
+        self.earn(point, earned);
+        self.slips = 0;
+    }
+
+    /// Whether a solution adds what it has earned to the account of those before it.
+    fn earn(&mut self, point: &Point, earned: Option<f64>) -> bool {
         let before = self.account.filter(|(at, _)| (at - point.omega).abs() <= NEAR * at);
-        let credit = before.map_or(0.0, |(_, left)| left) + earned.unwrap_or(0.0);
-        self.account = earned.map(|_| (point.omega, credit));
-        if before.is_some() && earned.is_some() {
-            credit
-        } else {
-            f64::INFINITY
-        }
+        let left = before.map_or(0.0, |(_, left)| left);
+        self.account = earned.map(|earned| (point.omega, left + earned));
+        before.is_some()
     }
 
     /// Newton's method did not come from a neighbour to a point.

@@ -301,16 +301,15 @@ impl Compliance for ModalCompliance {
         // Measured: products of matrices, elimination by a library, and by hand.
         let [own, pair, factor, answer] = match self.contacts() {
             ContactModes::FEWEST.. => [100.0, 0.35, 0.5, 0.6],
-            contacts if contacts > FEW => [40.0, 1.5, 1.5, 2.5],
-            _ => [40.0, 1.5, 0.3, 2.5],
+            contacts if contacts > FEW => [27.0, 1.4, 1.5, 2.5],
+            _ => [27.0, 1.4, 0.3, 2.5],
         };
         let restrained = self.restraint.is_some();
         let (loaded, acting) = if restrained { (contacts, contacts) } else { (points, points) };
         // A factorisation and as many solutions as there are points.
         let restraint = contacts.powi(2) * (factor * contacts + answer * points);
         let restraint = if restrained { restraint } else { 0.0 };
-        let each = if observed >= 32 { 0.2 } else { 1.2 };
-        let displacement = modes * (25.0 + 1.5 * acting + each * observed as f64);
+        let displacement = modes * (12.0 + 1.7 * acting + 0.25 * observed as f64);
         [modes * (own + pair * contacts * loaded) + restraint, displacement]
     }
 }
