@@ -10,9 +10,11 @@ use crate::structure::Compliance;
 /// its compliances and displacements as long as these are the lesser part; else they cost no more than there. Measured
 /// on random chains of 1 to 40 contacts, estimates take 0.35 times as long as solutions in the median, and longer by
 /// up to a fifth at 2 of 1000.
-const ALLOWED: f64 = 1.0;
-/// The same of so many contacts that products with the modes may serve: there estimates take two thirds of what is reckoned.
-const ALLOWED_OF_SEVERAL: f64 = 1.3;
+const ALLOWED: f64 = 1.3;
+/// The same of solutions up to this harmonic, whose steps are short of what is not reckoned, by themselves and along a
+/// curve.
+const FEW: usize = 5;
+const ALLOWED_OF_FEW: [f64; 2] = [1.0, 0.95];
 /// The same of a few nodes or faces, whose laws and tangents take more than is reckoned.
 const ALLOWED_OF_COUPLED: f64 = 2.0;
 /// The same of a ring, of which nearly all is reckoned, by itself and along a curve. With less by itself, estimates
@@ -24,7 +26,7 @@ const ALLOWED_OF_MANY: f64 = 0.25;
 const ALLOWED_OF_NODES: f64 = 0.8;
 
 /// The same of all others along a curve, over what solutions beside each other take.
-const ALLOWED_ALONG: f64 = 0.95;
+const ALLOWED_ALONG: f64 = 1.2;
 
 /// Most that receptances of loads at the points that slip take, over those of all: contacts that begin to slip take as
 /// much once more.
@@ -117,7 +119,11 @@ impl<'a> Effort<'a> {
     pub(super) fn earned(&self, highest: usize) -> f64 {
         let steps = BESIDE * (self.step(highest) + self.values(highest));
         let ring = self.compliance().ring().is_some();
-        let share = if ring { ALLOWED_OF_RING[1] } else { ALLOWED_ALONG };
+        let share = match highest {
+            _ if ring => ALLOWED_OF_RING[1],
+            ..=FEW => ALLOWED_OF_FEW[1],
+            _ => ALLOWED_ALONG,
+        };
         allowance(share, steps, self.orders(highest))
     }
 
@@ -138,8 +144,8 @@ impl<'a> Effort<'a> {
             ALLOWED_OF_MANY
         } else if coupled {
             ALLOWED_OF_COUPLED
-        } else if self.compliance().contact_modes().is_some() {
-            ALLOWED_OF_SEVERAL
+        } else if highest <= FEW {
+            ALLOWED_OF_FEW[0]
         } else {
             ALLOWED
         }
