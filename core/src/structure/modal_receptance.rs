@@ -263,20 +263,16 @@ impl Compliance for ModalCompliance {
         for (column, request) in coordinates.col_iter_mut().zip(requests) {
             self.write_coordinates(request, &mut acting, column);
         }
-        if let Some(rows) = consecutive(observe) {
-            let (shapes, one) = (self.right.get(rows, ..), c64::new(1.0, 0.0));
-            let out = MatMut::from_column_major_slice_mut(out, shapes.nrows(), requests.len());
-            multiply(out, Accum::Replace, shapes, coordinates.as_ref(), one);
-            return Ok(());
-        }
-        for (own, out) in coordinates.col_iter().zip(out.chunks_exact_mut(observe.len().max(1))) {
-            for (j, coordinate) in own.iter().enumerate() {
-                let shape = self.right.col_as_slice(j);
-                for (x, &dof) in out.iter_mut().zip(observe) {
-                    *x += shape[dof] * coordinate;
-                }
-            }
-        }
+        // Always a product: what a DOF does must not depend on those that are observed with it, not even in rounding.
+        let gathered;
+        let shapes = if let Some(rows) = consecutive(observe) {
+            self.right.get(rows, ..)
+        } else {
+            gathered = Mat::from_fn(observe.len(), modes, |i, j| self.right[(observe[i], j)]);
+            gathered.as_ref()
+        };
+        let out = MatMut::from_column_major_slice_mut(out, observe.len(), requests.len());
+        multiply(out, Accum::Replace, shapes, coordinates.as_ref(), c64::new(1.0, 0.0));
         Ok(())
     }
 
