@@ -66,6 +66,7 @@ NUMBERS: dict[str, tuple[str, dict[str, tuple[float, float]]]] = {
     "quadratic": ("holds", {"order of Newton": (6.5274, 1e-2)}),
     "superlinear": (
         "holds",
+        # Medians over runs of some sixty steps, in which rounding of the first Jacobian grows.
         {"last quotient": (0.1842, BY_ROUNDING), "quotient in the middle": (0.83462, 1e-2)},
     ),
     "printed-norm": ("false", {"as printed": (15, 0), "squared": (31, 0), "runs": (32, 0)}),

@@ -50,16 +50,9 @@ impl SampleTable {
         Self::on_grid(harmonics, resolved, COARSER)
     }
 
-    /// The table of motions that need not be followed to the last digit, on a quarter of the samples: it
-    /// brackets turning points that are no closer than the harmonics usually have them, and takes a
-    /// quarter of the effort.
-    #[must_use]
-    pub fn coarse(harmonics: Harmonics) -> Self {
-        let resolved = harmonics.highest();
-        Self::coarse_up_to(resolved, harmonics)
-    }
-
-    /// The same of motions that have hardly anything above the harmonic `resolved`.
+    /// The table of motions that have hardly anything above the harmonic `resolved` and need not be followed to the last
+    /// digit, on a quarter of the samples: it brackets turning points that are no closer than the harmonics usually have
+    /// them, and takes a quarter of the effort.
     #[must_use]
     pub fn coarse_up_to(resolved: usize, harmonics: Harmonics) -> Self {
         Self::on_grid(harmonics, resolved, 1)
