@@ -17,9 +17,8 @@ const FEW: usize = 5;
 const ALLOWED_OF_FEW: [f64; 2] = [1.0, 0.95];
 /// The same of a few nodes or faces, whose laws and tangents take more than is reckoned.
 const ALLOWED_OF_COUPLED: f64 = 2.0;
-/// The same of a ring, of which nearly all is reckoned, by itself and along a curve. With less by itself, estimates
-/// stop short of upper modes of the sectors.
-const ALLOWED_OF_RING: [f64; 2] = [1.3, 1.0];
+/// The same of a ring, of which nearly all is reckoned, by itself and along a curve.
+const ALLOWED_OF_RING: f64 = 0.9;
 /// The same of many contacts, whose products with the modes are reckoned as they are.
 const ALLOWED_OF_MANY: f64 = 0.25;
 /// The same of many nodes that slip or open, of which nearly all is reckoned.
@@ -120,7 +119,7 @@ impl<'a> Effort<'a> {
         let steps = BESIDE * (self.step(highest) + self.values(highest));
         let ring = self.compliance().ring().is_some();
         let share = match highest {
-            _ if ring => ALLOWED_OF_RING[1],
+            _ if ring => ALLOWED_OF_RING,
             ..=FEW => ALLOWED_OF_FEW[1],
             _ => ALLOWED_ALONG,
         };
@@ -137,7 +136,7 @@ impl<'a> Effort<'a> {
     pub(super) fn allowed(&self, [highest, order]: [usize; 2]) -> f64 {
         let coupled = self.is_of_nodes();
         if self.compliance().ring().is_some() {
-            ALLOWED_OF_RING[0]
+            ALLOWED_OF_RING
         } else if coupled && self.is_of_many(order) {
             ALLOWED_OF_NODES
         } else if self.is_of_many(highest) {

@@ -217,23 +217,23 @@ impl Linear {
         requests: &[Request<'_>],
         out: &mut [c64],
     ) -> Result<(), Error> {
-        let observed = requests.first().map_or(1, |request| request.observe.len().max(1));
-        let mut parts = requests.iter().zip(out.chunks_exact_mut(observed));
         match (self, compliance.ring(), motion.zip(compliance.contact_modes())) {
             (Self::Ring { orders, .. }, Some(ring), _) => {
-                parts.zip(orders).try_for_each(|((request, out), answers)| {
-                    let loaded = request.quantity != Quantity::OfSlip;
-                    let motion = answers.motion(loaded, request.slip_load);
-                    ring.displacement_of(answers.order(), &motion, request, out)
-                })
+                let motion = |(request, answers): (&Request<'_>, &RingAnswers)| {
+                    answers.motion(request.quantity != Quantity::OfSlip, request.slip_load)
+                };
+                let motions: Vec<_> = requests.iter().zip(orders).map(motion).collect();
+                let orders: Vec<_> = orders.iter().map(RingAnswers::order).collect();
+                ring.displacements_of(&orders, &motions, requests, out)
             }
             (_, _, Some((motion, modes))) => {
-                parts.try_for_each(|(Request { harmonic, observe, .. }, out)| {
-                    if let Some(slot) = harmonics.slot(*harmonic) {
-                        modes.observe(*harmonic, slot, motion, observe, out);
+                let observed = requests.first().map_or(1, |request| request.observe.len().max(1));
+                for (request, out) in requests.iter().zip(out.chunks_exact_mut(observed)) {
+                    if let Some(slot) = harmonics.slot(request.harmonic) {
+                        modes.observe(request.harmonic, slot, motion, request.observe, out);
                     }
-                    Ok(())
-                })
+                }
+                Ok(())
             }
             _ => compliance.displacements(requests, out),
         }

@@ -11,52 +11,62 @@ use std::f64::consts::TAU;
 const SILENT: f64 = 1e-9;
 
 impl Ring {
-    /// [`Compliance::displacement`] with the equations of this harmonic and frequency and the motion
-    /// at hand; equations of a slope must have slopes.
+    /// [`Compliance::displacements`] with the equations of the harmonics at this frequency and the motions at hand;
+    /// equations of slopes must have slopes.
     ///
     /// # Errors
     /// As [`Compliance::receptance`].
-    pub fn displacement_of(
+    pub fn displacements_of(
         &self,
-        order: &RingOrder,
-        motion: &RingMotion,
-        request: &Request<'_>,
+        orders: &[&RingOrder],
+        motions: &[RingMotion],
+        requests: &[Request<'_>],
         out: &mut [c64],
     ) -> Result<(), Error> {
-        self.observe(motion, request, out)?;
-        if request.quantity == Quantity::Slope {
-            let rate = order.respond_rate(true, motion);
+        self.observe(motions, requests, out)?;
+        if requests.iter().any(|request| request.quantity == Quantity::Slope) {
+            let rate = |(order, motion): (&&RingOrder, _)| order.respond_rate(true, motion);
+            let rates: Vec<RingMotion> = orders.iter().zip(motions).map(rate).collect();
+            let quantity = Quantity::OfSlip;
+            let of_rates = requests.iter().map(|request| Request { quantity, ..*request });
+            let of_rates: Vec<_> = of_rates.collect();
             let mut moved = vec![c64::new(0.0, 0.0); out.len()];
-            let of_rate = Request { quantity: Quantity::OfSlip, ..*request };
-            self.observe(&rate, &of_rate, &mut moved)?;
+            self.observe(&rates, &of_rates, &mut moved)?;
             out.iter_mut().zip(moved).for_each(|(out, moved)| *out += moved);
         }
         Ok(())
     }
 
-    /// Reads observed DOFs off the sectors they belong to, with the motion at their ports.
+    /// Reads observed DOFs off the sectors they belong to, with the motions at their ports: all harmonics of a
+    /// sector at once.
     fn observe(
         &self,
-        motion: &RingMotion,
-        request: &Request<'_>,
+        motions: &[RingMotion],
+        requests: &[Request<'_>],
         out: &mut [c64],
     ) -> Result<(), Error> {
+        let Some(observed) = requests.first().map(|request| request.observe) else { return Ok(()) };
         let (ports, dofs) = (self.layout.ports(), self.layout.dofs);
-        let (mut observe, mut rest) = (Vec::new(), out);
-        for together in request.observe.chunk_by(|one, next| one / dofs == next / dofs) {
+        let mut begin = 0;
+        for together in observed.chunk_by(|one, next| one / dofs == next / dofs) {
             let sector = together[0] / dofs;
             let range = sector * ports..(sector + 1) * ports;
-            observe.clear();
-            observe.extend(together.iter().map(|dof| dof % dofs));
-            let own = Request {
+            let observe: Vec<usize> = together.iter().map(|dof| dof % dofs).collect();
+            let parts = requests.iter().zip(motions).map(|(request, motion)| Request {
                 contact: &motion.port[range.clone()],
-                slip_load: &motion.force[range],
+                slip_load: &motion.force[range.clone()],
                 observe: &observe,
                 ..*request
-            };
-            let (here, others) = rest.split_at_mut(together.len());
-            self.sectors[sector].displacement(&own, here)?;
-            rest = others;
+            });
+            let own: Vec<_> = parts.collect();
+            let mut moved = vec![c64::new(0.0, 0.0); own.len() * observe.len()];
+            self.sectors[sector].displacements(&own, &mut moved)?;
+            let to = begin..begin + observe.len();
+            let orders = out.chunks_exact_mut(observed.len());
+            orders
+                .zip(moved.chunks_exact(observe.len()))
+                .for_each(|(out, moved)| out[to.clone()].copy_from_slice(moved));
+            begin = to.end;
         }
         Ok(())
     }
@@ -73,11 +83,12 @@ impl Compliance for Ring {
 
     fn effort(&self, _points: usize, observed: usize) -> [f64; 2] {
         let interface = (2 * self.layout.interface.len()) as f64;
+        // Each is eliminated from the ring, with two neighbours beside it: complex numbers, or blocks.
+        let elimination = if interface > 2.0 { 1e3 + 0.5 * interface.powi(3) } else { 250.0 };
         let each = observed.div_ceil(self.sectors.len());
         self.sectors.iter().fold([0.0; 2], |[receptance, displacement], sector| {
             let own = sector.effort(sector.contacts(), each);
-            // Each is eliminated from the ring, with two neighbours beside it.
-            [receptance + own[0] + 1e3 + 0.5 * interface.powi(3), displacement + own[1] + 200.0]
+            [receptance + own[0] + elimination, displacement + own[1] + 30.0]
         })
     }
 
@@ -132,7 +143,7 @@ impl Compliance for Ring {
         let order = self.order(request.harmonic, request.omega, slopes)?;
         let loaded = request.quantity != Quantity::OfSlip;
         let motion = order.respond(loaded, request.slip_load);
-        self.displacement_of(&order, &motion, request, out)
+        self.displacements_of(&[&order], &[motion], std::slice::from_ref(request), out)
     }
 
     fn stuck_frequencies(&self) -> &[f64] {

@@ -61,18 +61,24 @@ impl RingNewton {
     }
 
     fn efforts(ring: &Ring, slots: f64, active: f64) -> [f64; 2] {
-        let (sectors, ports) = (ring.sectors() as f64, ring.layout().ports() as f64);
-        let answers = active * sectors * slots * (20.0 + 5.0 * ports.powi(2));
-        let (left, runs) = if Run::suits(ring.layout()) {
+        let (layout, sectors) = (ring.layout(), ring.sectors() as f64);
+        let [between, interface] = [&layout.between, &layout.interface].map(|of| of.len() as f64);
+        let [inside, rest] = [layout.contacts as f64 - between, 2.0 * between + interface];
+        let (inside, rest, unknowns) = (inside * slots, rest * slots, active * slots);
+        let slipping = (active / layout.contacts as f64).min(sectors);
+        let (left, runs) = if Run::suits(layout) {
             // A contact with the next sector has two of them left.
-            let reach = if ring.layout().between.is_empty() { 1.0 } else { 2.0 };
-            ((reach * active).min(sectors), sectors * (200.0 + 50.0 * slots))
+            let reach = if between > 0.0 { 2.0 } else { 1.0 };
+            ((reach * active).min(sectors), sectors * (100.0 + 5.0 * slots))
         } else {
             (sectors, 0.0)
         };
+        let row = 330.0 + 85.0 * (inside + rest) + 0.35 * rest.powi(3);
+        let of_sector = 2.5 * layout.ports() as f64 + interface * (22.0 + 2.3 * interface);
+        let answer = 90.0 + sectors * of_sector;
         [
-            left * (800.0 + 0.2 * (ports * slots).powi(3)) + runs,
-            1e3 + answers + 0.06 * (active * slots).powi(3),
+            left * row + slipping * 0.2 * inside.powi(3) + runs,
+            600.0 + unknowns * (answer + 2.0 * unknowns + 0.01 * unknowns.powi(2)),
         ]
     }
 
