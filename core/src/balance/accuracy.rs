@@ -132,7 +132,8 @@ impl Extension {
         let share = (SHARE * highest as f64 / least as f64).ceil() as usize;
         let beyond = first.max(highest + share * least);
         let farthest = FARTHEST.0 * highest + FARTHEST.1;
-        let wanted = (reach.min(farthest as f64) as usize).max(beyond);
+        // The first harmonic past it counts.
+        let wanted = (reach.min(farthest as f64).ceil() as usize + least - 1).max(beyond);
         let (orders, steps) = (solution.orders(highest), OF_SOLUTION * solution.step(highest));
         // The compliances of the kept harmonics are known; all are recovered, after each step.
         let later = effort.with_more_slip();
