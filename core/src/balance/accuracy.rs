@@ -132,8 +132,8 @@ impl Extension {
         let share = (SHARE * highest as f64 / least as f64).ceil() as usize;
         let beyond = first.max(highest + share * least);
         let farthest = FARTHEST.0 * highest + FARTHEST.1;
-        // The first harmonic past it counts.
-        let wanted = (reach.min(farthest as f64).ceil() as usize + least - 1).max(beyond);
+        let reach = reach.min(farthest as f64);
+        let wanted = (reach as usize).max(beyond);
         let (orders, steps) = (solution.orders(highest), OF_SOLUTION * solution.step(highest));
         // The compliances of the kept harmonics are known; all are recovered, after each step.
         let later = effort.with_more_slip();
@@ -144,7 +144,9 @@ impl Extension {
         };
         let budget =
             |order: usize| allowance(effort.allowed([highest, order]), steps, orders).min(credit);
-        let candidates = || (first..=wanted).step_by(least);
+        // The first one past it tells what follows.
+        let last = wanted.max(reach.ceil() as usize + least - 1);
+        let candidates = || (first..=last).step_by(least);
         let farthest = |single: f64| {
             let affordable = |order: &usize| account(*order).of(true) + single <= budget(*order);
             candidates().take_while(affordable).last()

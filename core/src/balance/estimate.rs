@@ -145,11 +145,12 @@ impl<'a> ForcedBalance<'a> {
         if follows {
             let (discarded, of) = (whole.discarded(harmonics), self.model.compliance());
             // As many points go on as solutions cost what an estimate does; all that may of a ring.
-            let cost = whole.account.of(false) / effort.closely(harmonics.highest());
+            let time = whole.account.of(false);
+            let cost = time / effort.closely(harmonics.highest());
             let ring = of.ring().is_some();
             let in_a_row = if ring { IN_A_ROW } else { cost.ceil().max(1.0) as usize };
-            let piece = &mut self.neighbour.piece;
-            if let Some(errors) = piece.continued(point, solution, of, discarded, in_a_row) {
+            let (piece, own) = (&mut self.neighbour.piece, (in_a_row, time));
+            if let Some(errors) = piece.continued(point, solution, of, discarded, own) {
                 return Ok(Some(errors));
             }
         }

@@ -41,7 +41,7 @@ impl Resonances {
     ) -> Self {
         let mut found = Self::default();
         let compliance = effort.compliance();
-        if !compliance.finds_modes(0) {
+        if !compliance.finds_modes(0.0) {
             return found;
         }
         let divisor = effort.common_harmonic();
@@ -54,7 +54,7 @@ impl Resonances {
                 break;
             }
             let range = [-NEAR, NEAR].map(|aside| (order as f64 + aside) * omega);
-            if !compliance.is_clear(order, range, 0) {
+            if !compliance.is_clear(order, range, 0.0) {
                 found.orders.push(order);
                 found.effort = taken;
             }

@@ -84,8 +84,8 @@ pub(super) struct SmoothPiece {
     last: Option<Estimated>,
     /// Points behind the last one that did without.
     went_on: usize,
-    /// How often the compliance was asked for its modes.
-    asked: usize,
+    /// What estimates have taken that might have gone on, if modes were known \[ns\].
+    spent: f64,
 }
 
 impl SmoothPiece {
@@ -95,15 +95,15 @@ impl SmoothPiece {
         (self.last, self.went_on) = (Some(point), 0);
     }
 
-    /// The estimate of a point that lies on the piece; nothing if it asks for its own, as it does behind so
-    /// many `in_a_row` that did without.
+    /// The estimate of a point that lies on the piece; nothing if it asks for its own, which takes a `time`
+    /// \[ns\], as it does behind so many `in_a_row` that did without.
     pub(super) fn continued(
         &mut self,
         point: &Point,
         solution: &Unknowns,
         compliance: &dyn Compliance,
         discarded: Range<usize>,
-        in_a_row: usize,
+        (in_a_row, time): (usize, f64),
     ) -> Option<Vec<f64>> {
         let ((omega, errors), last) = self.before.as_ref().zip(self.last.as_ref())?;
         let (behind, ahead) = (last.omega - omega, point.omega - last.omega);
@@ -126,9 +126,9 @@ impl SmoothPiece {
         {
             return None;
         }
-        self.asked += 1;
+        self.spent += time;
         let half_wave = solution.harmonics.half_wave();
-        if !is_clear([last.omega, point.omega], compliance, discarded, half_wave, self.asked) {
+        if !is_clear([last.omega, point.omega], compliance, discarded, half_wave, self.spent) {
             return None;
         }
         let both = errors.iter().zip(&last.errors);
@@ -156,7 +156,7 @@ fn is_clear(
     compliance: &dyn Compliance,
     mut discarded: Range<usize>,
     half_wave: bool,
-    asked: usize,
+    spent: f64,
 ) -> bool {
     let step = (now - before).abs();
     discarded.all(|order| {
@@ -165,7 +165,7 @@ fn is_clear(
             return true;
         }
         let range = [now - step, now + step].map(|omega| order as f64 * omega);
-        compliance.is_clear(order, range, asked)
+        compliance.is_clear(order, range, spent)
     })
 }
 

@@ -325,8 +325,8 @@ impl Compliance for CyclicCompliance {
     }
 
     /// Discarded harmonics see other nodal diameters than the loads.
-    fn is_clear(&self, harmonic: usize, range: [f64; 2], asked: usize) -> bool {
-        self.wave(harmonic).is_ok_and(|wave| wave.is_clear(harmonic, range, asked))
+    fn is_clear(&self, harmonic: usize, range: [f64; 2], spent: f64) -> bool {
+        self.wave(harmonic).is_ok_and(|wave| wave.is_clear(harmonic, range, spent))
     }
 
     fn effort(&self, points: usize, observed: usize) -> [f64; 2] {

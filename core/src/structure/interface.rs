@@ -102,8 +102,8 @@ impl Compliance for InterfaceCompliance {
     }
 
     /// Those without contacts take a decomposition.
-    fn finds_modes(&self, asked: usize) -> bool {
-        pays_for_modes(self.dofs(), asked, self.effort(self.contacts(), 0)[0])
+    fn finds_modes(&self, spent: f64) -> bool {
+        pays_for_modes(self.dofs(), spent)
     }
 
     fn lowest_frequencies(&self) -> Option<[f64; 2]> {
@@ -218,10 +218,10 @@ mod tests {
         assert!((stuck * stuck - free * free - 3.0).abs() < 1e-5);
         // Few questions do not pay for them, and a passage of less than a bandwidth needs none.
         assert!(
-            !compliance.is_clear(3, [90.0, 91.0], 1) && compliance.is_clear(3, [90.0, 90.1], 1)
+            !compliance.is_clear(3, [90.0, 91.0], 0.0) && compliance.is_clear(3, [90.0, 90.1], 0.0)
         );
         assert!(compliance.free.get().is_none());
-        assert!(compliance.is_clear(3, [90.0, 91.0], 1000));
+        assert!(compliance.is_clear(3, [90.0, 91.0], f64::INFINITY));
         let all = compliance.free_frequencies();
         assert!((all[0] / free - 1.0).abs() < 1e-5 && all.len() == size);
     }

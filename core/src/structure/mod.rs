@@ -253,18 +253,19 @@ pub trait Compliance: Send + Sync {
     }
 
     /// Whether no mode that a harmonic sees, with the contacts stuck or removed, resonates within a range that
-    /// it passes in less than half of that [rad/s]. What does not know its modes says no, until `asked`
-    /// questions before this one have cost as much as to find them.
-    fn is_clear(&self, _harmonic: usize, range: [f64; 2], asked: usize) -> bool {
+    /// it passes in less than half of that [rad/s]. What does not know its modes says no, until what this
+    /// has `spent` \[ns\] would have found them.
+    fn is_clear(&self, _harmonic: usize, range: [f64; 2], spent: f64) -> bool {
         let is_clear = |list: &[f64]| !list.is_empty() && within(list, range).is_empty();
         self.narrowest_bandwidth() >= 0.5 * (range[1] - range[0])
-            || (self.finds_modes(asked)
+            || (self.finds_modes(spent)
                 && is_clear(self.stuck_frequencies())
                 && is_clear(self.free_frequencies()))
     }
 
-    /// Whether its natural frequencies are known, or so many questions pay for a decomposition.
-    fn finds_modes(&self, _asked: usize) -> bool {
+    /// Whether its natural frequencies are known, or a decomposition takes no longer than what was `spent` without them
+    /// \[ns\].
+    fn finds_modes(&self, _spent: f64) -> bool {
         true
     }
 
@@ -277,11 +278,11 @@ pub trait Compliance: Send + Sync {
 /// DOFs of the largest structure that is decomposed only to know its modes: that takes less than a second.
 const LARGEST: usize = 1500;
 
-/// Whether so many answers that take an effort each \[ns\] pay for a decomposition of some DOFs.
-fn pays_for_modes(dofs: usize, answers: usize, effort: f64) -> bool {
+/// Whether a decomposition of some DOFs takes no longer than what was spent without it \[ns\].
+fn pays_for_modes(dofs: usize, spent: f64) -> bool {
     let size = dofs as f64;
     let decomposition = 0.2 * size.powi(3) + 1.5e4 * size;
-    dofs <= LARGEST && answers as f64 * effort > decomposition
+    dofs <= LARGEST && spent > decomposition
 }
 
 /// Positions of the entries of an ascending list within a range.

@@ -277,7 +277,7 @@ impl Compliance for ModalCompliance {
     }
 
     /// What resonates beside a mode of this base is taken to be as narrow.
-    fn is_clear(&self, _harmonic: usize, range: [f64; 2], _asked: usize) -> bool {
+    fn is_clear(&self, _harmonic: usize, range: [f64; 2], _spent: f64) -> bool {
         let width = 0.5 * (range[1] - range[0]);
         let narrow = |frequency: f64| match &self.spectrum {
             Spectrum::Real { omega_squared, damping, .. } => {

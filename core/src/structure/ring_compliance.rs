@@ -156,8 +156,8 @@ impl Compliance for Ring {
 
     /// The modes of the whole disk take a decomposition of it; their damping is about that of the sectors
     /// with their neighbours held still.
-    fn finds_modes(&self, asked: usize) -> bool {
-        pays_for_modes(self.dofs(), asked, self.effort(0, self.dofs())[0])
+    fn finds_modes(&self, spent: f64) -> bool {
+        pays_for_modes(self.dofs(), spent)
     }
 
     /// Of the sectors with their neighbours held still, which takes no decomposition of the whole
