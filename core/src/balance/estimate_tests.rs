@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
-use super::accuracy::Extension;
+use super::accuracy::{Extension, PAST_LAST_MODE};
 use super::condensed::Condensed;
 use super::effort::Effort;
 use super::forced::ForcedBalance;
@@ -38,6 +38,19 @@ fn an_extended_balance_reaches_as_far_as_the_solution_allows() {
     assert!(least.highest == 3 && !least.has_two());
     assert!(some.has_two() && some.account.of(true) <= earned);
     assert!(3 < some.highest && some.highest < whole.highest, "{}", some.highest);
+}
+
+/// A mode just below answers harmonic 7 as strongly as one just above.
+#[test]
+fn an_extended_balance_reaches_to_the_first_harmonic_past_the_last_mode() {
+    let (model, kept) = (model(), Harmonics::new(3, true));
+    let effort = Effort::new(&model, true, 1, 2);
+    let past = PAST_LAST_MODE * model.compliance().highest_frequency();
+    for (reach, highest) in [(4.9, 5), (5.1, 7), (6.9, 7), (7.1, 9), (8.9, 9)] {
+        let extended = Extension::new(&effort, &kept, past / reach, f64::INFINITY);
+        assert!(extended.highest == highest && extended.has_two(), "{reach}: {}", extended.highest);
+        assert!((extended.unseen - 1.0).abs() < 1e-12);
+    }
 }
 
 #[test]

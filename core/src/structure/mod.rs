@@ -253,8 +253,8 @@ pub trait Compliance: Send + Sync {
     }
 
     /// Whether no mode that a harmonic sees, with the contacts stuck or removed, resonates within a range that
-    /// it passes in less than half of that [rad/s]. What does not know its modes says no, until what this
-    /// has `spent` \[ns\] would have found them.
+    /// it passes in less than half of that [rad/s]. What does not know its modes says no, unless it finds them for
+    /// what was `spent` without them.
     fn is_clear(&self, _harmonic: usize, range: [f64; 2], spent: f64) -> bool {
         let is_clear = |list: &[f64]| !list.is_empty() && within(list, range).is_empty();
         self.narrowest_bandwidth() >= 0.5 * (range[1] - range[0])

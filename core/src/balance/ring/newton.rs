@@ -60,6 +60,7 @@ impl RingNewton {
         eliminated.min(answers)
     }
 
+    /// Of elimination sector after sector, and of answers to loads at single points: fits to measured times.
     fn efforts(ring: &Ring, slots: f64, active: f64) -> [f64; 2] {
         let (layout, sectors) = (ring.layout(), ring.sectors() as f64);
         let [between, interface] = [&layout.between, &layout.interface].map(|of| of.len() as f64);
