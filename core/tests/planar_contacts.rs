@@ -242,6 +242,12 @@ proptest! {
         omega in 2.0_f64..20.0,
     ) {
         let found = orbit(&system, omega);
+        if found.response.status == PointStatus::Stalled {
+            // Motions of other periods alone last.
+            let history = run(&system, &settings(omega, Scheme::Exact, 1000, 8), None);
+            prop_assert!(history.change.iter().all(|change| *change > 1e-6));
+            return Ok(());
+        }
         prop_assert_eq!(found.response.status, PointStatus::Converged);
         let friction: f64 = found.response.contacts.iter().map(|c| c.dissipation).sum();
         prop_assert!(friction >= -1e-12 && found.viscous >= 0.0);

@@ -159,6 +159,25 @@ def test_automatic_harmonics_keep_the_tolerance(seed: int, points: slice) -> Non
         assert (error[frf.converged] < 3e-3).all(), dof
 
 
+def test_no_estimate_among_modes_is_believed_that_falls_too_fast() -> None:
+    between = np.array([11225.34, 4079.93, 4743.12, 30602.08, 9155.39])
+    own = np.array([18026.07, 20824.7, 9299.3, 43865.53, 40853.74, 9325.06])
+    stiffness = np.diag(own) - np.diag(between, 1) - np.diag(between, -1)
+    mass = np.diag([0.89454, 0.526405, 0.624422, 1.058192, 1.246492, 1.796595])
+    structure = ss.Structure(mass, stiffness, dofs=[f"x{i}" for i in range(6)])
+    springs = {"x1": (1941.58, 3.46048), "x4": (47.9625, 2.9209), "x3": (3648270.0, 0.219356)}
+    contacts = [ss.Jenkins(dof, stiffness=k, slip_force=f) for dof, (k, f) in springs.items()]
+    model = ss.Model(structure, contacts, [ss.Force("x5", 1.929032)])
+    omega = np.array([84.48675528])
+    frf, fine = (ss.forced_response(model, omega, h, observe=structure.dofs) for h in ("auto", 121))
+    assert frf.converged.all()
+    # With 19 harmonics estimates are a fifth of the error, and a fourteenth of those with 13.
+    for dof in frf.dofs:
+        change = fine.coefficients(dof).copy()
+        change[:, : frf.coefficients(dof).shape[1]] -= frf.coefficients(dof)
+        assert (np.abs(change).max(axis=1) < 2e-3 * fine.amplitude(dof)).all(), dof
+
+
 def test_modal_coordinates_are_observed_if_they_are_named() -> None:
     blade = ss.reference.turbine_blade()
     frf = ss.forced_response(blade, (1508.0, 1747.0))

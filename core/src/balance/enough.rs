@@ -2,7 +2,7 @@
 
 use super::accuracy::PAST_LAST_MODE;
 use super::forced::ForcedBalance;
-use super::resolution_control::Decision;
+use super::resolution_control::{beyond_modes, Decision};
 use super::scale::OF_HARMONICS;
 use super::settings::Resolution;
 use super::solution::{Point, PointStatus};
@@ -15,6 +15,8 @@ struct Climb {
     iterations: usize,
     /// The last level that was solved.
     below: Option<Point>,
+    /// Its error estimate, without doubts.
+    estimate: Vec<f64>,
     stalled: bool,
     from_below: bool,
 }
@@ -65,6 +67,8 @@ impl ForcedBalance<'_> {
             };
             climb.iterations += point.iterations;
             point.iterations = climb.iterations;
+            let estimate = point.error_estimate.clone();
+            self.doubt(&mut point, &climb);
             resolution = match point.status {
                 PointStatus::Converged => match self.judge(&point) {
                     Decision::Enough => return Ok(point),
@@ -83,7 +87,7 @@ impl ForcedBalance<'_> {
                             return self.ended(point, resolution, &climb);
                         }
                         start.clone_from(&point.unknowns);
-                        climb.below = Some(point);
+                        (climb.below, climb.estimate) = (Some(point), estimate);
                         more
                     }
                 },
@@ -147,6 +151,19 @@ impl ForcedBalance<'_> {
             PAST_LAST_MODE * self.model.compliance().highest_frequency() / omega
         } else {
             f64::INFINITY
+        }
+    }
+
+    /// Among modes no estimate is believed that falls faster from one level to the next than errors do beyond them:
+    /// it has missed something.
+    fn doubt(&self, point: &mut Point, climb: &Climb) {
+        let among = (point.harmonics as f64) < self.order_of_modes(point.omega);
+        let Some(below) = climb.below.as_ref().filter(|_| among) else { return };
+        for (error, before) in point.error_estimate.iter_mut().zip(&climb.estimate) {
+            let least = beyond_modes(*before, below.harmonics, point.harmonics);
+            if least.is_finite() {
+                *error = error.max(least);
+            }
         }
     }
 

@@ -19,9 +19,10 @@ const FIRST_RUNG: usize = 3;
 /// An estimate this far below the tolerance lets the next point try one level less.
 const GENEROUS: f64 = 0.05;
 /// Beyond all modes friction forces with kinks leave displacements whose harmonics fall with the fourth power of their
-/// order, and an error that falls with the third: the next point tries one level less where that leaves this share
-/// of the tolerance, …
-const FORESEEN: (i32, f64) = (3, 0.6);
+/// order, and an error that falls with the third. …
+const FALL: i32 = 3;
+/// … The next point tries one level less where that leaves this share of the tolerance, …
+const FORESEEN: f64 = 0.6;
 /// … from this level on. Below it a level costs next to nothing, and curves around sharp folds are followed more
 /// safely with one more.
 const DEAR: usize = 39;
@@ -143,12 +144,9 @@ impl ResolutionControl {
 
     /// Whether a level less than one that leaves an error would do, by how errors fall beyond all modes.
     fn has_fallen(&self, order: usize, left: f64, modes: f64) -> bool {
-        let Some(less) = order.checked_sub(1).map(|less| self.orders[less] as f64) else {
-            return false;
-        };
-        let (power, share) = FORESEEN;
-        let grown = (self.orders[order] as f64 / less).powi(power);
-        less >= modes.max(DEAR as f64) && left * grown <= share * self.settings.tolerance
+        let Some(less) = order.checked_sub(1).map(|less| self.orders[less]) else { return false };
+        less as f64 >= modes.max(DEAR as f64)
+            && beyond_modes(left, self.orders[order], less) <= FORESEEN * self.settings.tolerance
     }
 
     /// The samples that a solution lacks by their error alone, if they may be had.
@@ -217,6 +215,11 @@ impl ResolutionControl {
         };
         Resolution { harmonics, samples: samples.map(bounded) }
     }
+}
+
+/// What becomes of an error of `from` harmonics with `to` of them, beyond all modes.
+pub(super) fn beyond_modes(error: f64, from: usize, to: usize) -> f64 {
+    error * (from as f64 / to as f64).powi(FALL)
 }
 
 /// The next power of two whose error, of second order, is about `excess` times less.

@@ -18,7 +18,7 @@ use faer::Mat;
 const STEPS: usize = 30;
 /// Newton iterations that close the orbit again after a step; one that needs more is too long.
 const CLOSING: usize = 12;
-/// Steps that are taken in full.
+/// Newton steps that are taken in full; then as many others, and shorter ones.
 const FULL: usize = 8;
 /// Halvings of a step after which the orbit does not close.
 const HALVINGS: i32 = 8;
@@ -124,9 +124,12 @@ pub(super) fn choose(
             let touches = kept.iter().any(Kept::touches);
             return if touches { Chosen::Touching } else { Chosen::Inside };
         }
-        let Some(step) = step(shooting, assumption, y, &kept) else { return Chosen::Lost };
-        // Where the states on the way go round in circles a shorter step ends that.
-        let first = i32::from(number >= FULL);
+        // Newton's method may go round in circles where the assumed positions move faster than the sliders: these
+        // come after them, as in time. So it may where states change on the way: a shorter step ends that.
+        let follows = (FULL..2 * FULL).contains(&number);
+        let step = step(shooting, assumption, y, &kept, follows);
+        let Some(step) = step else { return Chosen::Lost };
+        let first = i32::from(number >= 2 * FULL);
         let found = (first..HALVINGS).find_map(|n| {
             let share = 0.5_f64.powi(n);
             let mut next: Vec<f64> = y.iter().zip(&step).map(|(y, by)| y + share * by).collect();
@@ -185,17 +188,40 @@ fn strain(shooting: &Shooting<'_>, point: usize) -> Option<usize> {
     })
 }
 
-/// Change of the orbit that leads the sliders to the assumed positions, to first order.
+/// Change of the orbit that leads the sliders to the assumed positions, to first order: to those that come of it, or
+/// to those of now if the sliders follow.
 fn step(
     shooting: &mut Shooting<'_>,
     assumption: Assumption<'_>,
     y: &[f64],
     kept: &[Kept],
+    follows: bool,
 ) -> Option<Vec<f64>> {
     let (size, count) = (y.len(), kept.len());
     let moved = responses(shooting, y, kept)?;
+    let mut change = Mat::from_fn(count, 1, |i, _| kept[i].miss());
+    if !follows {
+        answers(shooting, assumption, y, kept, &moved)?
+            .partial_piv_lu()
+            .solve_in_place(&mut change);
+    }
+    let step: Vec<f64> =
+        (0..size).map(|i| (0..count).map(|j| change[(j, 0)] * moved[(i, j)]).sum()).collect();
+    (norm(&step).is_finite()).then_some(step)
+}
+
+/// By how much each slider comes nearer to the assumed position, which moves with the orbit, by how much each is
+/// moved; columns are those that are moved.
+fn answers(
+    shooting: &mut Shooting<'_>,
+    assumption: Assumption<'_>,
+    y: &[f64],
+    kept: &[Kept],
+    moved: &Mat<f64>,
+) -> Option<Mat<f64>> {
+    let count = kept.len();
     // Differences are taken where nothing slips: away from the limits that are touched.
-    let inside = beside(y, kept, &moved);
+    let inside = beside(y, kept, moved);
     let here = self::kept(shooting, assumption, &inside)?;
     let target = |of: &[Kept], point: usize| {
         of.iter().find(|one| one.point == point).map_or(f64::NAN, Kept::target)
@@ -212,11 +238,7 @@ fn step(
             matrix[(i, j)] -= if slope.is_finite() { slope } else { 0.0 };
         }
     }
-    let mut change = Mat::from_fn(count, 1, |i, _| kept[i].miss());
-    matrix.partial_piv_lu().solve_in_place(&mut change);
-    let step: Vec<f64> =
-        (0..size).map(|i| (0..count).map(|j| change[(j, 0)] * moved[(i, j)]).sum()).collect();
-    (norm(&step).is_finite()).then_some(step)
+    Some(matrix)
 }
 
 /// Derivative of the closed orbit in the positions of the sliders, column by column.
