@@ -14,11 +14,11 @@ use crate::solve::{newton, norm, NewtonSettings, Outcome};
 use faer::linalg::solvers::Solve as _;
 use faer::Mat;
 
-/// Newton steps on the positions.
-const STEPS: usize = 30;
+/// Steps on the positions.
+const STEPS: usize = 48;
 /// Newton iterations that close the orbit again after a step; one that needs more is too long.
 const CLOSING: usize = 12;
-/// Newton steps that are taken in full; then as many others, and shorter ones.
+/// Newton steps in full; then as many others, as many in full, and shorter ones.
 const FULL: usize = 8;
 /// Halvings of a step after which the orbit does not close.
 const HALVINGS: i32 = 8;
@@ -129,7 +129,7 @@ pub(super) fn choose(
         let follows = (FULL..2 * FULL).contains(&number);
         let step = step(shooting, assumption, y, &kept, follows);
         let Some(step) = step else { return Chosen::Lost };
-        let first = i32::from(number >= 2 * FULL);
+        let first = i32::from(number >= 3 * FULL);
         let found = (first..HALVINGS).find_map(|n| {
             let share = 0.5_f64.powi(n);
             let mut next: Vec<f64> = y.iter().zip(&step).map(|(y, by)| y + share * by).collect();
