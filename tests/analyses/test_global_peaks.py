@@ -254,6 +254,23 @@ def test_where_the_phase_turns_at_once_the_response_is_solved(harmonics):
     np.testing.assert_allclose(moved, 1.0, rtol=1e-5)
 
 
+def test_what_friction_bounds_within_a_few_billionths_is_found():
+    own = np.array(
+        [23342.80906095, 23345.703835614706, 11334.145046171, 22734.032818261, 20419.649265]
+    )
+    between = np.array([19635.229732781878, 1371.0854832066, 1226.7960473647, 11779.22939677])
+    stiffness = np.diag(own) - np.diag(between, 1) - np.diag(between, -1)
+    structure = ss.Structure(np.eye(5), stiffness, dofs=list("abcde"))
+    contact = ss.Jenkins("a", stiffness=1e4, slip_force=22.99424743)
+    model = ss.Model(structure, [contact], [ss.Force("b", 3.9179042849)])
+    frf = ss.forced_response(model, (182.8, 183.0), harmonics=1)
+    omega = frf.peak("d").omega * (1.0 + np.linspace(-3e-9, 3e-9, 100))
+    around = ss.forced_response(model, omega, harmonics=1)
+    for dof in "acde":
+        highest = around.amplitude(dof).max()
+        assert frf.peak(dof).amplitude == pytest.approx(highest, rel=2e-3), dof
+
+
 @pytest.mark.slow
 def test_tables_show_what_nothing_bounds(tmp_path):
     from typer.testing import CliRunner

@@ -263,6 +263,20 @@ def test_archives_of_ansys_as_its_reader_reads_them(name):
         assert sorted(mesh.numbers[mesh.node_sets[part]]) == sorted(members)
 
 
+def test_lines_of_numbers_that_belong_to_other_commands_are_passed_over(tmp_path):
+    others = (
+        "RLBLOCK,       1,       1,       8,       7\n(2i8,6g16.9)\n(7g16.9)\n"
+        "       1       2  0.00000000      1.00000000\n\nMPTEMP,R5.0, 1, 1,  0.0,\n"
+        "MPDATA,R5.0, 1,EX  ,     1, 1,  2.0E+11,\nSECBLOCK,1\n 0.1, 1, 0., 3\n"
+        "*VWRITE,A(1)\n(F8.3)\n*PREAD,B,2\n 1.5 2.5\nEND PREAD\n"
+        "*CREATE,a,txt\n1.5\t2\n*END\n! 3 4\n-1\n"
+    )
+    text = joint().replace("EXTOPT", others + "EXTOPT").replace("NBLOCK", others + "NBLOCK")
+    mesh, whole = read(tmp_path, text), read(tmp_path, joint(), "whole.cdb")
+    assert mesh.node_sets.keys() == whole.node_sets.keys()
+    np.testing.assert_array_equal(mesh.cells[0][1], whole.cells[0][1])
+
+
 def test_commands_share_lines_and_are_known_by_four_letters(tmp_path):
     whole = joint()
     text = whole.replace("ET,        2,185", "ET,2,SOLID185 $ KEYOPT,2,2,3").replace(

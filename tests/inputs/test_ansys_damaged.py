@@ -63,7 +63,7 @@ CHANGES = [
     ("        27        28\n", "        25        25\n", "element 20: corners coincide as in no"),
     ("2.0000000000000E+000\n", "2.0000000000000E+0\n", "is cut short"),
     ("2.0000000000000E+000\n", "2.0000000000000Q+000\n", "is no real number"),
-    ("NBLOCK", "NBLICK", "it has no NBLOCK"),
+    ("NBLOCK", "NBLICK", "line 15: '(3i9,6e21.13e3)' stands outside of a block"),
     (
         "N,R5.3,LOC,       -1,",
         "N,R5.3,LOC,       99,1.,2.,3.",
@@ -118,6 +118,30 @@ def test_ranges_without_end_take_no_room(tmp_path):
             read(tmp_path, joint() + block)
 
 
+def test_components_without_head_or_twice_and_elements_without_end_are_refused(tmp_path):
+    text = joint()
+    blocks = re.findall(r"CMBLOCK[^\n]*\n\(8i10\)\n[^C]*?\n(?=CM|EX)", text)
+    assert len(blocks) == 4
+    head, _, numbers = blocks[0].partition("\n")
+    stray = text.replace(head + "\n", "")
+    end = text.index("        -1\nCMBLOCK")
+    for damaged, says in (
+        (stray, "'(8i10)' stands outside of a block; the line before is lost"),
+        (stray.replace("-1\n(8", "-1\n\n/COM, parts\n! here\n(8"), "stands outside of a block"),
+        (stray.replace(numbers, numbers.partition("\n")[2]), "stands outside of a block"),
+        (text.replace("EXTOPT,", "MP,EX,1,2E11\n 5 6\nEXTOPT,"), "'5 6' stands outside of a block"),
+        (text[:end], "the block of elements does not end"),
+        (text.replace("        -1\nCMBLOCK", "CMBLOCK"), "the block of elements does not end"),
+        *((text.replace(one, one + one), "is given twice") for one in blocks),
+        (text + blocks[1].lower(), "component PAD is given twice"),
+    ):
+        assert damaged != text
+        with pytest.raises(ss.ModelError, match=r"joint\.cdb") as error:
+            read(tmp_path, damaged)
+        assert says in str(error.value)
+        assert "\n" not in str(error.value)
+
+
 def same(mesh, other):
     """Return whether two meshes have the same nodes, cells and parts."""
     if [kind for kind, _ in mesh.cells] != [kind for kind, _ in other.cells]:
@@ -145,10 +169,9 @@ def test_a_line_of_a_block_lost_or_twice_is_refused(tmp_path):
                 refused += 1
                 continue
             assert same(mesh, whole), lines[at]
-            lost = {*whole.node_sets, *whole.surfaces} - {*mesh.node_sets, *mesh.surfaces}
-            # without its head a component is no part: whoever names it is told
-            assert all(name in lines[at] for name in lost), lines[at]
-            for name in whole.node_sets.keys() - lost:
+            assert whole.surfaces.keys() == mesh.surfaces.keys(), lines[at]
+            assert whole.node_sets.keys() == mesh.node_sets.keys(), lines[at]
+            for name in whole.node_sets:
                 np.testing.assert_array_equal(mesh.node_sets[name], whole.node_sets[name])
     assert refused > 1.2 * (last - first)
 

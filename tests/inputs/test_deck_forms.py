@@ -162,3 +162,22 @@ def test_surfaces_made_of_others_are_refused_by_name(tmp_path):
     text = DECK.replace("*STEP", "*SURFACE, NAME=BOTH, COMBINE=UNION\nSEAT, SEAT\n*STEP")
     with pytest.raises(ss.ModelError, match="surface BOTH: COMBINE is not read"):
         ss.read_mesh(deck(tmp_path, text))
+
+
+@pytest.mark.parametrize(
+    ("line", "name"), [("*INCLUDE, INPUT={}\n", "d{}.inp"), ("INCLUDE {}\n", "d{}.bdf")]
+)
+def test_few_files_that_include_each_other_many_times_are_refused(tmp_path, line, name):
+    for number in range(6):
+        (tmp_path / name.format(number)).write_text(20 * line.format(name.format(number + 1)))
+    (tmp_path / name.format(6)).write_text("")
+    with pytest.raises(ss.ModelError, match="it includes more than 1000 files; join some") as error:
+        ss.read_mesh(tmp_path / name.format(0))
+    assert "\n" not in str(error.value)
+    (tmp_path / name.format(3)).write_text("")
+    with pytest.raises(ss.ModelError, match="more than 1000 files"):
+        ss.read_mesh(tmp_path / name.format(0))
+    (tmp_path / name.format(2)).write_text("")
+    with pytest.raises(ss.ModelError) as error:
+        ss.read_mesh(tmp_path / name.format(0))
+    assert "includes" not in str(error.value)

@@ -1,6 +1,7 @@
 """Frequency response functions in Universal Files."""
 
 import os
+import signal
 
 import numpy as np
 import pytest
@@ -143,3 +144,49 @@ def test_functions_that_pyuff_passes_over_are_missed(tmp_path, old, new):
         ss.read_frf(path)
     path.write_text("".join(f"{line:80}\n" for line in content.splitlines()))
     assert len(ss.read_frf(path)) == 2
+
+
+@pytest.fixture
+def pressed(monkeypatch):
+    """Press Ctrl-C in a function of pyuff, at the first call that has some arguments."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+
+    def press(module, name, work, fits=lambda *_: True):
+        left = [signal.SIGINT]
+
+        def stopped(*arguments):
+            if left and fits(*arguments):
+                signal.raise_signal(left.pop())
+            return work(*arguments)
+
+        stopped.dtype = np.dtype(int)  # numpy takes what stands for int as a type
+        monkeypatch.setattr(module, name, stopped, raising=False)
+        return left
+
+    yield press
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    signal.signal(signal.SIGINT, before)
+
+
+def test_ctrl_c_reaches_who_writes(tmp_path, pressed):
+    head = pyuff.datasets.dataset_58
+    left = pressed(head, "_opt_fields", head._opt_fields)
+    with pytest.raises(KeyboardInterrupt):
+        ss.write_frf(tmp_path / "a.uff", ss.Frf([1.0, 2.0], [1.0, 2.0], "1.1", "1.1"))
+    assert not left
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("place", ["dataset", "kind", "count"])
+def test_ctrl_c_reaches_who_reads(tmp_path, pressed, place):
+    path = written(tmp_path / "bench.uff")
+    head = pyuff.datasets.dataset_58
+    if place == "dataset":
+        left = pressed(head, "_parse_header_line", head._parse_header_line)
+    else:
+        # pyuff passes over what is raised at the kind of a dataset, and goes on
+        kind = b"    58" if place == "kind" else 1
+        left = pressed(pyuff.pyuff, "int", int, lambda value: value == kind)
+    with pytest.raises(KeyboardInterrupt):
+        ss.read_frf(path)
+    assert not left

@@ -1,5 +1,7 @@
 """Harwell-Boeing files, sound and damaged."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 import scipy.io
@@ -128,6 +130,7 @@ BODY = "   1   2   2\n   2\n  5.0000E+00\n"
             header("RUA").replace(f"{1:14d}\n", f"{0:14d}\n", 1) + BODY,
             "0 lines of values announced, 1 fill 1",
         ),
+        (header("RUA", entries=5) + BODY, "5 entries announced for 2 x 2"),
         (header("RUA", entries=-1) + BODY, "does not hold 3 counts"),
         (header("RSA", formats="(3I4) (3I4)") + BODY, "line 4 does not hold three"),
         (header("RSA", formats="(3I4) (3I4) (A12)") + BODY, r"unsupported number format '\(A12\)'"),
@@ -159,6 +162,21 @@ def test_refuses_harwell_boeing(tmp_path, text, message):
     with pytest.raises(ModelError, match=message) as refusal:
         read_matrix(write(tmp_path / "k.rsa", text))
     assert "\n" not in str(refusal.value)
+
+
+@pytest.mark.parametrize(
+    ("rows", "columns", "entries"),
+    [(3, 3, 2 * 10**8), (2 * 10**4, 10**4, 2 * 10**8), (3, 2 * 10**8, 1)],
+)
+def test_what_a_short_file_cannot_hold_takes_no_room(tmp_path, rows, columns, entries):
+    formats = "(999999999I1)   (999999999I1)   (999999999E1.0)"
+    file = write(tmp_path / "k.rua", header("RUA", rows, columns, entries, formats) + "1\n1\n1.0\n")
+    tracemalloc.start()
+    with pytest.raises(ModelError, match=r"\d+ (entries|numbers) announced"):
+        read_matrix(file)
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert most < 10**7
 
 
 def scipy_file(tmp_path, size=9):

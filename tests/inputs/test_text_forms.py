@@ -84,6 +84,10 @@ def test_a_matrix_in_rows_of_text(tmp_path, text):
         ("1;2 N\n3;4\n", "line 1: '2 N' is no"),
         ("1;2;3x4;5\n3;4\n", "line 1: '3x4' is no"),
         ("1,nan\nnan,4\n", "finite"),
+        (",,,", "line 1: 0 numbers; give a row"),
+        (",\n,\n", "line 1: 0 numbers; give a row"),
+        (";;\n", "line 1: 0 numbers; give a row"),
+        (",,\n1,2\n3,4\n", "line 1: 0 numbers; give a row"),
     ],
 )
 def test_rows_of_text_that_are_no_matrix_are_refused(tmp_path, text, says):

@@ -27,6 +27,10 @@ _NAME = 4
 """Characters by which commands are known."""
 _TEXTS = ("/COM", "C***", "/TIT", "/STI")
 """Commands that take the rest of a line as it is."""
+_ALONE = re.compile(r"\(|[-+]?[.0-9][-+.0-9ED,\s]*$", re.I)
+"""A format, or numbers and nothing else: no command begins so."""
+_WITH_LINES = re.compile(r"\*(?:VRE|VWR|PRE|MSG|MWR|CRE)|SECB|(?!NBL|EBL|CMBL|ETBL)[A-Z]*BL")
+"""Commands that are passed over with such lines: RLBLOCK, *VWRITE."""
 
 
 @dataclass
@@ -122,6 +126,8 @@ class _Reader:
         self.values: dict[str, str] = {}
         """Parameters, by which Workbench numbers its types."""
         self.type = 1
+        self.last = ""
+        """The command before."""
 
     def __iter__(self) -> Iterator[str]:
         while self.number < len(self.lines):
@@ -136,6 +142,14 @@ class _Reader:
 
     def take(self, command: str, words: list[str]) -> None:
         """Take over a command with the lines that belong to it."""
+        line = ",".join(words)
+        if command != "-1" and _ALONE.match(line):
+            if not _WITH_LINES.match(self.last):
+                raise ValueError(
+                    f"{brief(line)} stands outside of a block; the line before is lost"
+                )
+            return
+        self.last = command or self.last
         act = _COMMANDS.get(command[:_NAME])
         # Parameters may have names that begin alike: MOVE_X=3, FILL(2)=1.
         if act and command.lstrip("*/").isalnum() and command not in _OTHERS:
@@ -228,6 +242,8 @@ class _Reader:
     def component(self, words: list[str]) -> None:
         """CMBLOCK, name, NODE or ELEMENT, how many numbers."""
         name, kind, announced = words[1].upper(), words[2].upper()[:4], whole_field(words[3])
+        if name in self.made.components:
+            raise ValueError(f"component {name} is given twice")
         form = _Format.parse(self.next())
         if kind not in ("NODE", "ELEM") or set(form.kinds) != {"I"}:
             raise ValueError(f"component {name} is neither of nodes nor of elements")
@@ -294,7 +310,9 @@ class _Limits:
         """Refuse a block of another number of lines, or one that does not end."""
         if self.count not in (None, read):
             raise ValueError(f"{self.count} {self.what}s announced, {read} present")
-        if self.count is None and "-1" not in [word.strip() for word in end.split(",")]:
+        # Components may follow the elements; without the end nothing shows that they are lost.
+        needed = self.count is None or self.what == "element"
+        if needed and "-1" not in [word.strip() for word in end.split(",")]:
             raise ValueError(f"the block of {self.what}s does not end; the file was cut short")
 
 

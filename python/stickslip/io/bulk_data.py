@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterable, Iterator
 from dataclasses import dataclass
+from itertools import count
 from pathlib import Path
 
 from stickslip.io.source import at_line, of_deck, require_included
@@ -26,11 +27,14 @@ class Card:
     """Name of the file, if it is an included one."""
 
 
-def bulk_cards(file: Path, names: Iterable[str], depth: int = 0) -> Iterator[Card]:
+def bulk_cards(
+    file: Path, names: Iterable[str], depth: int = 0, files: Iterator[int] | None = None
+) -> Iterator[Card]:
     """Give each card of some names up to ENDDATA, those of included files in their place."""
     if depth > _DEEPEST:
         raise ValueError("INCLUDE: files include each other")
-    require_included(file)
+    files = files or count()
+    require_included(file, files)
     wanted = (*names, "INCLUDE", "ENDDATA")
     own = file.name if depth else ""
     for card in cards(of_deck(file.read_bytes()).split("\n"), wanted):
@@ -39,7 +43,7 @@ def bulk_cards(file: Path, names: Iterable[str], depth: int = 0) -> Iterator[Car
         if card.name == "INCLUDE":
             with at_line(card.line, own):
                 name = _included(card.fields[0])
-            yield from bulk_cards(file.parent / name, names, depth + 1)
+            yield from bulk_cards(file.parent / name, names, depth + 1, files)
         else:
             yield Card(card.line, card.name, card.fields, own)
 

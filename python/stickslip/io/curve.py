@@ -63,7 +63,7 @@ def _rows(file: Path, columns: int | None) -> list[list[float]]:
         fields = _fields(line.strip())
         if not line.strip() or line.strip()[0] in "#%":
             continue
-        size = columns or len(rows[0] if rows else fields)
+        size = columns or len(rows[0] if rows else fields) or 1
         try:
             if len(fields) < size or (columns is None and len(fields) > size):
                 raise ValueError(f"{len(fields)} number" + "s" * (len(fields) != 1))
@@ -97,10 +97,11 @@ def _fields(line: str) -> list[str]:
 def _is_heading(line: str, columns: int | None) -> bool:
     """Return whether a line before the first number begins with something else than numbers.
 
-    That of a table, of which no row may be lost, has no number at all.
+    That of a table, of which no row may be lost, has words and no number at all.
     """
     if columns is None:
-        return not any(map(_is_number, _fields(line.strip())))
+        fields = _fields(line.strip())
+        return bool(fields) and not any(map(_is_number, fields))
     words = re.split(r"[,;\s]+", line.strip(_ENDS))
     return len(words) < columns or not all(map(_is_number, words[:columns]))
 

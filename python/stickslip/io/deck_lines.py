@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import count
 from pathlib import Path
 from typing import TypeAlias
 
@@ -60,11 +61,12 @@ def blocks(file: Path) -> Iterator[Block]:
     """Give each keyword of a deck."""
     found: Block | None = None
     open_ended = False
-    for line in _lines(file, 0):
+    files = count()
+    for line in _lines(file, 0, files):
         text = line[2]
         if text.startswith("*"):
             if found:
-                yield _whole(found, file)
+                yield _whole(found, file, files)
             found = Block(_keyword(text), _options(text), [])
             open_ended = text.endswith(",")
         elif found and open_ended and (more := _continued(text)):
@@ -74,16 +76,16 @@ def blocks(file: Path) -> Iterator[Block]:
             open_ended = False
             found.rows.append(Row(line))
     if found:
-        yield _whole(found, file)
+        yield _whole(found, file, files)
 
 
-def _whole(block: Block, file: Path) -> Block:
+def _whole(block: Block, file: Path, files: Iterator[int]) -> Block:
     """Return a block with the rows of the file that it names."""
     needed = _NAMED.get(block.keyword)
     if needed and needed not in block.options:
         raise ValueError(f"*{block.keyword}: {needed}= is missing")
     if block.keyword in ("NODE", *_NAMED) and "INPUT" in block.options:
-        block.rows.extend(map(Row, _lines(file.parent / block.options["INPUT"], 1)))
+        block.rows.extend(map(Row, _lines(file.parent / block.options["INPUT"], 1, files)))
     return block
 
 
@@ -102,11 +104,11 @@ def _continued(text: str) -> dict[str, str] | None:
     return None
 
 
-def _lines(file: Path, depth: int) -> Iterator[_Line]:
+def _lines(file: Path, depth: int, files: Iterator[int]) -> Iterator[_Line]:
     """Give the lines of a deck, without comments, those of included files in their place."""
     if depth > _DEEPEST:
         raise ValueError("*INCLUDE: files include each other")
-    require_included(file)
+    require_included(file, files)
     for number, line in enumerate(of_deck(file.read_bytes()).split("\n"), 1):
         text = line.strip()
         if not text or text.startswith("**"):
@@ -115,7 +117,7 @@ def _lines(file: Path, depth: int) -> Iterator[_Line]:
             named = _INPUT.search(text)
             if named is None:
                 raise ValueError("*INCLUDE: INPUT= is missing; write it on the same line")
-            yield from _lines(file.parent / named[1].strip().strip("\"'"), depth + 1)
+            yield from _lines(file.parent / named[1].strip().strip("\"'"), depth + 1, files)
         else:
             yield file.name if depth else "", number, text
 

@@ -27,6 +27,7 @@ from stickslip.checks import (
 from stickslip.disk import BladedDisk
 from stickslip.errors import ModelError
 from stickslip.files import write
+from stickslip.interruption import Interruption
 from stickslip.io.source import readable
 from stickslip.model import Model
 
@@ -195,7 +196,8 @@ def read_frf(path: str | os.PathLike[str]) -> tuple[Frf, ...]:
         response function per force.
     """
     file = file_path(path, "path")
-    with readable(file, "Universal File"):
+    # pyuff catches everything, Ctrl-C too: the block raises what was lost in it.
+    with readable(file, "Universal File"), Interruption() as watch, watch.at_once():
         pyuff = optional_package("pyuff", f"{file}: Universal Files")
         present = _require_datasets(file)
         universal = pyuff.UFF(str(file))
@@ -234,9 +236,10 @@ def universal_file(file: Path, functions: Iterable[Frf]) -> bytes:
     pyuff = optional_package("pyuff", f"{file}: Universal Files")
     sets = [_dataset(pyuff, one) for one in functions]
     content = io.StringIO()
-    for one in sets:
-        # `UFF.write_sets` writes to files by name only, and hides why a disk refuses them.
-        pyuff.pyuff._write58(content, one)
+    with Interruption() as watch, watch.at_once():  # see `read_frf`
+        for one in sets:
+            # `UFF.write_sets` writes to files by name only, and hides why a disk refuses them.
+            pyuff.pyuff._write58(content, one)
     return content.getvalue().encode()
 
 

@@ -142,6 +142,10 @@ def read_harwell_boeing(path: Path) -> Sparse:
     start, blocks = 5 if sum(cards[3:]) else 4, []
     end = start + total
     counts = (width + 1, entries, entries)
+    if entries > height * width:
+        raise ValueError(f"{entries} entries announced for {height} x {width}")
+    if sum(counts) > len(text):
+        raise ValueError(f"{sum(counts)} numbers announced in {len(text)} characters")
     named = zip(("pointers", "rows", "values"), counts, formats, cards, strict=False)
     for name, count, written, announced in named:
         needed = written.cards(count)

@@ -16,6 +16,9 @@ LARGEST_UNPACKED = 2**30
 """Bytes that packed content may take unpacked, a heuristic: 30 million entries as text, a dense
 matrix of 11 000 rows. What is not packed may be as large as its file."""
 
+MOST_INCLUDED = 1000
+"""Files that a deck may include in all, a heuristic: it has some tens, one per part."""
+
 _LONGEST = 80
 _MARK = b"\xef\xbb\xbf"
 
@@ -70,8 +73,13 @@ def readable(file: Path, kind: str) -> Iterator[None]:
         ) from error
 
 
-def require_included(file: Path) -> None:
-    """Refuse a file that another one names and that is not there, or is none."""
+def require_included(file: Path, files: Iterator[int]) -> None:
+    """Refuse a file that another one names and that is not there, or is none.
+
+    `files` counts those of a deck from 0, its own: few that name each other are read many times.
+    """
+    if next(files) > MOST_INCLUDED:
+        raise ValueError(f"it includes more than {MOST_INCLUDED} files; join some of them")
     try:
         there = is_file(file)
     except ModelError:

@@ -20,7 +20,7 @@ const IDLE: u32 = 1;
 /// Shortest interval that is split, as a share of the narrowest bandwidth, …
 const OF_BANDWIDTH: f64 = 1e-3;
 /// … and relative to the frequency: what friction alone bounds may be as narrow as rounding leaves it.
-const SHORTEST: [f64; 2] = [1e-12, 1e-9];
+const SHORTEST: [f64; 2] = [1e-14, 1e-9];
 /// Share of a height that solutions leave open.
 const LEFT_OPEN: f64 = 1e-10;
 
