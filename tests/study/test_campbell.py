@@ -121,6 +121,8 @@ def test_safe_shows_the_next_family_and_no_more():
     assert "excitation at 3000 rpm" in axes.get_legend_handles_labels()[1]
     every = Figure().add_subplot()
     plot.safe(found.at(0), 3000 * RPM, modes=3, ax=every)
+    with pytest.raises(ss.ModelError, match="index: 9 is too large; give at most"):
+        found.at(9)
     assert every.get_ylim()[1] > found.stuck[0].max() / (2 * np.pi)
 
 

@@ -6,6 +6,7 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
+from stickslip.checks import whole_number
 from stickslip.disk import BladedDisk, MistunedDisk, NodalDiameters
 from stickslip.drawn import Drawn
 from stickslip.results.fields import Columns, Float, Int, Shown, column
@@ -100,6 +101,10 @@ class Campbell(ColumnResult):
         return sorted(set(found), key=lambda one: one.speed)
 
     def at(self, index: int) -> NodalDiameters:
-        """Return the natural frequencies of a disk over its nodal diameters at a speed."""
+        """Return the natural frequencies of a disk over its nodal diameters at a speed.
+
+        The speeds are counted from 0.
+        """
+        index = whole_number(index, "index", largest=len(self.speed) - 1)
         disk: BladedDisk = self.model  # type: ignore[assignment]
         return NodalDiameters(disk, self.diameter, self.stuck[index], self.slipping[index])
