@@ -243,7 +243,7 @@ proptest! {
     ) {
         let found = orbit(&system, omega);
         if found.response.status == PointStatus::Stalled {
-            // Motions of other periods alone last.
+            // One that no motion settles on may not be found.
             let history = run(&system, &settings(omega, Scheme::Exact, 1000, 8), None);
             prop_assert!(history.change.iter().all(|change| *change > 1e-6));
             return Ok(());

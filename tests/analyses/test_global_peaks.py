@@ -266,9 +266,10 @@ def test_what_friction_bounds_within_a_few_billionths_is_found():
     frf = ss.forced_response(model, (182.8, 183.0), harmonics=1)
     omega = frf.peak("d").omega * (1.0 + np.linspace(-3e-9, 3e-9, 100))
     around = ss.forced_response(model, omega, harmonics=1)
+    # b hardly moves in it.
     for dof in "acde":
-        highest = around.amplitude(dof).max()
-        assert frf.peak(dof).amplitude == pytest.approx(highest, rel=2e-3), dof
+        highest, peak = around.amplitude(dof).max(), frf.peak(dof).amplitude
+        assert (1.0 - 1e-6) * highest <= peak <= 1.01 * highest, dof
 
 
 @pytest.mark.slow

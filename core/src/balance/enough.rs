@@ -157,8 +157,9 @@ impl ForcedBalance<'_> {
     /// Among modes no estimate is believed that falls faster from one level to the next than errors do beyond them:
     /// it has missed something.
     fn doubt(&self, point: &mut Point, climb: &Climb) {
+        let solved = point.status == PointStatus::Converged;
         let among = (point.harmonics as f64) < self.order_of_modes(point.omega);
-        let Some(below) = climb.below.as_ref().filter(|_| among) else { return };
+        let Some(below) = climb.below.as_ref().filter(|_| solved && among) else { return };
         for (error, before) in point.error_estimate.iter_mut().zip(&climb.estimate) {
             let least = beyond_modes(*before, below.harmonics, point.harmonics);
             if least.is_finite() {
