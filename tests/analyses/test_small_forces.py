@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
+from chains import in_a_row
 from stickslip import _core
 from stickslip.settings.balance import BalanceSettings
 
@@ -126,3 +127,20 @@ def test_small_numbers_are_named_with_an_exponent():
 
 
 SMALL = {"stiffness": 1.0, "slip_force": -1e-200}
+
+
+@pytest.mark.parametrize("ratio", [1e-7, 1e-9, 1e-10])
+@pytest.mark.parametrize("harmonics", [1, 3])
+def test_damping_bounds_resonances_whatever_little_it_is(ratio, harmonics):
+    stiffness = in_a_row([1e4, 1.3e4, 0.8e4, 0.9e4])
+    squared, shapes = np.linalg.eigh(stiffness)
+    structure = ss.Structure(np.eye(3), stiffness, ss.ModalDamping(ratio), list("abc"))
+    contact = ss.Jenkins("b", stiffness=1e3, slip_force=1e-5)
+    model = ss.Model(structure, [contact], [ss.Force("a", 1.0)])
+    natural = np.sqrt(squared[0])
+    height = abs(shapes[0, 0] * shapes[2, 0]) / (2.0 * ratio * squared[0])
+    frf = ss.forced_response(model, [natural], harmonics)
+    # Friction takes a 1e-5th of it.
+    assert frf.amplitude("c")[0] == pytest.approx(height, rel=1e-4)
+    over_range = ss.forced_response(model, (0.9 * natural, 1.1 * natural), harmonics)
+    assert over_range.peak("c").amplitude == pytest.approx(height, rel=1e-4)

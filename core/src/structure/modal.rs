@@ -22,6 +22,8 @@ use std::sync::Arc;
 
 /// Floor of the denominators of free modes, see [`Spectrum::weight`].
 const FREE_FLOOR: f64 = 1e-8;
+/// Damping, over the frequency of its mode, that is rounding of none.
+pub(super) const UNDAMPED: f64 = 1e-13;
 
 /// Natural frequencies below this share of the highest are those of rigid-body modes.
 const SLOWEST: f64 = 1e-9;
@@ -152,9 +154,14 @@ impl ModalCompliance {
         let substituted = statics.ncols() > 0;
         let law = law && !substituted;
         let frequencies = [&stuck, &free].map(HermitianModes::frequencies);
-        let of_real = |(modes, damping): (HermitianModes, Vec<f64>), floor: f64| {
+        let of_real = |(modes, damping): (HermitianModes, Vec<f64>), base: ModalBase| {
             let left = modes.shapes.adjoint().to_owned();
-            let floors = floors(floor, (&rows * &modes.shapes).as_ref());
+            let bounded =
+                |j: usize| damping[j].abs() > UNDAMPED * modes.omega_squared[j].max(0.0).sqrt();
+            let floors = match base {
+                ModalBase::Free => floors((&rows * &modes.shapes).as_ref(), bounded),
+                _ => vec![0.0; damping.len()],
+            };
             let spectrum = Spectrum::Real { omega_squared: modes.omega_squared, damping, floors };
             (spectrum, modes.shapes, left)
         };
@@ -163,11 +170,11 @@ impl ModalCompliance {
             |damping: &ModalDamping| damping.clone().separated(stuck.clone(), false);
         let (base, (spectrum, right, left), restraint) =
             if let Some(separate) = in_stuck.as_ref().and_then(in_stuck_modes) {
-                (ModalBase::Stuck, of_real(separate, 0.0), None)
+                (ModalBase::Stuck, of_real(separate, ModalBase::Stuck), None)
             } else if let Some(separate) =
                 (!substituted).then(|| project(true)).and_then(|own| own.separated(free, law))
             {
-                (ModalBase::Free, of_real(separate, FREE_FLOOR), Some(stiffness))
+                (ModalBase::Free, of_real(separate, ModalBase::Free), Some(stiffness))
             } else {
                 let damping = in_stuck.unwrap_or_else(|| project(false));
                 let damping = damping.matrix().as_ref();
@@ -216,7 +223,7 @@ impl ModalCompliance {
         Self {
             base: ModalBase::Free,
             spectrum: Spectrum::Real {
-                floors: floors(FREE_FLOOR, contacts.as_ref().as_ref()),
+                floors: floors(contacts.as_ref().as_ref(), |_| false),
                 omega_squared,
                 damping,
             },
@@ -288,11 +295,12 @@ impl ModalCompliance {
     }
 }
 
-/// The floors of modes, from what the contacts see of them: those that move none are modes of the stuck structure,
-/// too, and resonate.
-fn floors(floor: f64, contacts: MatRef<'_, c64>) -> Vec<f64> {
+/// The floors of free modes, from what the contacts see of them: those that move none are modes of the stuck
+/// structure, too, and resonate. Those that their own damping bounds need none.
+fn floors(contacts: MatRef<'_, c64>, bounded: impl Fn(usize) -> bool) -> Vec<f64> {
     let moves = |j: usize| (0..contacts.nrows()).any(|i| contacts[(i, j)].norm() > 0.0);
-    (0..contacts.ncols()).map(|j| if moves(j) { floor } else { 0.0 }).collect()
+    let floor = |j: usize| if moves(j) && !bounded(j) { FREE_FLOOR } else { 0.0 };
+    (0..contacts.ncols()).map(floor).collect()
 }
 
 /// The columns of two matrices beside one another.

@@ -3,6 +3,7 @@
 use super::contact_coordinates::ContactCoordinates;
 use super::contact_modes::ContactModes;
 use super::contact_shapes::{add_forces, displace, excite, gather, loaded, ContactShapes};
+use super::modal::UNDAMPED;
 use super::modal_orders::{Inverse, ModalOrders, Order};
 use super::quasi_static::QuasiStatic;
 use crate::solve::{gmres, multiply, settle, KrylovSettings};
@@ -157,7 +158,8 @@ impl ContactCoordinates for ContactModes {
                 let own = self.stiffness(j, rate);
                 // Met exactly by a mode that damping only couples: the iteration sees to the rest.
                 let least = FLOOR * rate * rate;
-                let meets = own.norm_sqr() < least * least;
+                let undamped = own.im.abs() < UNDAMPED * rate * rate;
+                let meets = undamped && own.norm_sqr() < least * least;
                 if meets { c64::new(0.0, least) } else { own }.inv()
             });
             let inverse = Inverse::Diagonal(inverse.collect());
