@@ -264,7 +264,7 @@ impl<'a, 'b> Search<'a, 'b> {
     }
 
     /// Why the highest point may lie in a part of the range that could not be solved, that too many
-    /// points have left open, or in which the response grows beyond all resolution.
+    /// points have left open, or in which the response is too narrow for numbers.
     fn doubt(&self, group: usize) -> Option<Doubt> {
         let samples = &self.envelope.samples;
         let (first, last) = (samples.first()?, samples.last()?);
@@ -278,12 +278,9 @@ impl<'a, 'b> Search<'a, 'b> {
         if ends || beyond(DOUBT).any(|(gap, _)| gap.closed) {
             return Some(Doubt::unsolved(self.failure.unwrap_or(PointStatus::Stalled)));
         }
-        if let Some((_, ends)) =
-            beyond(UNRESOLVED).find(|(_, ends)| self.envelope.is_shortest(ends))
-        {
-            return Some(Doubt::unbounded(ends[0].at));
-        }
-        let open = beyond(DOUBT).any(|(_, ends)| !self.envelope.is_shortest(ends));
+        // Also of resonances too narrow for numbers: what nothing bounds is known beforehand.
+        let open = |(_, ends): (_, &[Sample])| !self.envelope.is_shortest(ends);
+        let open = beyond(DOUBT).any(open) || beyond(UNRESOLVED).next().is_some();
         open.then(|| Doubt::unsolved(PointStatus::Stalled))
     }
 
