@@ -51,8 +51,10 @@ const UNEXPLAINED: f64 = 0.3;
 /// begins or ceases to slip: at nearly rigid contacts that go on slipping it overshoots tenfold.
 const TRUSTED: f64 = 2.0;
 /// Of solutions up to this harmonic the first change falls short there by as much, and the geometric mean of both counts
-/// if it is more.
+/// if it is more, …
 const FEW: usize = 5;
+/// … and all changes count so many times, as those of three grids do (Roache 1998).
+const CAUTION: f64 = 1.25;
 
 /// Newton steps of an extended balance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -332,8 +334,10 @@ fn of_extended(
             break;
         }
     }
-    let all = found.errors.iter_mut().chain(&mut found.first).chain([&mut found.contacts]);
-    all.for_each(|error| *error *= extension.unseen);
+    let caution = if point.harmonics <= FEW { CAUTION } else { 1.0 };
+    let both = found.errors.iter_mut().chain(&mut found.first);
+    both.for_each(|error| *error *= caution * extension.unseen);
+    found.contacts *= extension.unseen;
     Ok(Some(found))
 }
 

@@ -154,7 +154,7 @@ impl Model {
         }
     }
 
-    pub(super) fn slip_limits(&self) -> impl Iterator<Item = f64> + '_ {
+    pub(crate) fn slip_limits(&self) -> impl Iterator<Item = f64> + '_ {
         self.laws.iter().flat_map(|law| law.limits())
     }
 
