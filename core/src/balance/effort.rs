@@ -15,7 +15,7 @@ const ALLOWED: f64 = 1.3;
 /// curve.
 const FEW: usize = 5;
 const ALLOWED_OF_FEW: [f64; 2] = [0.96, 0.95];
-/// The same of laws without slip, which take half as many steps and are evaluated sooner.
+/// The same of laws without slip, by themselves: they take half as many steps and are evaluated sooner.
 const ALLOWED_OF_SMOOTH: f64 = 0.6;
 /// The same of a few nodes or faces, whose laws and tangents take more than is reckoned.
 const ALLOWED_OF_COUPLED: f64 = 2.0;
@@ -65,10 +65,6 @@ pub(super) struct Effort<'a> {
     of_order: [f64; 3],
     /// Points that a law couples, in the mean.
     coupled: f64,
-    /// Whether no law has a limit at which it slips.
-    smooth: bool,
-    /// What the harmonics that loads have are multiples of.
-    common_harmonic: usize,
     /// Whether Jacobians are formed in any case.
     formed: bool,
 }
@@ -87,18 +83,7 @@ impl<'a> Effort<'a> {
         let part = if part < WORTH * whole { part } else { whole };
         let of_order = [whole, part, displacement];
         let coupled = coupled_points(model);
-        let smooth = !model.slip_limits().any(f64::is_finite);
-        let common_harmonic = common_divisor(&compliance.forced_harmonics());
-        Self {
-            model,
-            half_wave,
-            slipping,
-            of_order,
-            coupled,
-            smooth,
-            common_harmonic,
-            formed: false,
-        }
+        Self { model, half_wave, slipping, of_order, coupled, formed: false }
     }
 
     /// The same where Jacobians are formed in any case.
@@ -127,7 +112,7 @@ impl<'a> Effort<'a> {
 
     /// What the harmonics that loads have are multiples of; those that friction answers with are, too.
     pub(super) fn common_harmonic(&self) -> usize {
-        self.common_harmonic
+        common_divisor(&self.compliance().forced_harmonics())
     }
 
     /// What a solution with harmonics up to `highest` that starts from its neighbour allows the estimates along their
@@ -160,12 +145,12 @@ impl<'a> Effort<'a> {
             ALLOWED_OF_MANY
         } else if coupled {
             ALLOWED_OF_COUPLED
-        } else if self.smooth {
-            ALLOWED_OF_SMOOTH
-        } else if highest <= FEW {
+        } else if highest > FEW {
+            ALLOWED
+        } else if self.model.slip_limits().any(f64::is_finite) {
             ALLOWED_OF_FEW[0]
         } else {
-            ALLOWED
+            ALLOWED_OF_SMOOTH
         }
     }
 
