@@ -175,6 +175,16 @@ def test_a_damper_curve_says_where_nothing_bounds():
     assert all(status == "converged" for status in below.status)
 
 
+def test_where_modes_are_too_many_a_resonance_without_bound_is_seen_by_its_height():
+    stiffness = 1e4 * (2.0 * np.eye(1100) - np.eye(1100, k=1) - np.eye(1100, k=-1))
+    structure = ss.Structure(np.eye(1100), stiffness)
+    contact = ss.Jenkins(structure.dofs[3], stiffness=1e3, slip_force=1e-3)
+    model = ss.Model(structure, [contact], [ss.Force(structure.dofs[0], 1.0)])
+    omega = (0.14, 0.42)  # the first mode, 0.285 rad/s
+    curve = ss.damper_curve(model, slip_force=[1e-3], dof="5", omega=omega, harmonics=1)
+    assert list(curve.status) == ["singular"]
+
+
 NARROW = {  # masses, springs from ground to ground, contacts, loaded DOF, observed DOF
     "two contacts": (
         [0.84899, 0.91583, 0.51884, 2.8553, 0.58772, 2.7943],

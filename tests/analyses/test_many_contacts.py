@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
+from chains import in_a_row
 
 EA, LENGTH, STIFFNESS, LIMIT = 1e7, 0.1, 1e10, 2e4
 
@@ -94,6 +95,24 @@ def test_contacts_that_slip_and_lift_off_are_those_of_receptances() -> None:
     opens = np.array([newton.open_fraction(c) for c in range(40)])
     assert 0.1 < np.mean(slip > 0.0) < 0.95
     assert opens.max() > 0.0
+
+
+@pytest.mark.parametrize("ratio", [1e-7, 1e-9, 1e-10])
+def test_damping_bounds_what_many_contacts_stick_to_whatever_little_it_is(ratio: float) -> None:
+    rng = np.random.default_rng(200)
+    stiffness = in_a_row(1e4 * 10 ** rng.uniform(-0.2, 0.2, 201))
+    squared, shapes = np.linalg.eigh(stiffness)
+    damping = shapes * (2.0 * ratio * np.sqrt(squared)) @ shapes.T
+    structure = ss.Structure(np.eye(200), stiffness, ss.ModalDamping(ratio))
+    held = np.sort(rng.choice(200, 150, replace=False))
+    contacts = [ss.Jenkins(str(i), stiffness=1e3, slip_force=1e30) for i in held]
+    stiffness[held, held] += 1e3
+    omega = np.sqrt(np.linalg.eigvalsh(stiffness)[0])
+    model = ss.Model(structure, contacts, [ss.Force("0", 1.0)])
+    dynamic = stiffness - omega**2 * np.eye(200) + 1j * omega * damping
+    height = abs(np.linalg.solve(dynamic, np.eye(200)[0])[100])
+    frf = ss.forced_response(model, [omega], 3)
+    assert frf.amplitude("100")[0] == pytest.approx(height, rel=1e-4)
 
 
 @pytest.mark.slow

@@ -7,6 +7,11 @@ use super::forced::ForcedBalance;
 const BESIDE: f64 = 1e-9;
 
 impl ForcedBalance<'_> {
+    /// Whether all resonances that nothing bounds are known beforehand.
+    pub(crate) fn knows_what_has_no_bound(&self) -> bool {
+        self.model.knows_what_is_unbounded()
+    }
+
     /// Whether nothing bounds the motion at a frequency at which a solution has failed.
     pub(super) fn has_no_bound(&self, omega: f64) -> bool {
         let interrupted = self.interruption();

@@ -60,10 +60,7 @@ impl Model {
         progress: &Progress<'_>,
     ) -> Result<Vec<(f64, Vec<usize>)>, Error> {
         let mut found = Vec::new();
-        if !self.affords_its_modes() {
-            return Ok(found);
-        }
-        if !self.is_travelling_wave() && self.structure.is_damped() {
+        if !self.affords_its_modes() || self.is_surely_damped() {
             return Ok(found);
         }
         let slips: Vec<bool> = self.slip_limits().map(f64::is_finite).collect();
@@ -85,6 +82,16 @@ impl Model {
             last = Some((diameter, state));
         }
         Ok(found)
+    }
+
+    /// Whether all resonances that nothing bounds are known.
+    pub(crate) fn knows_what_is_unbounded(&self) -> bool {
+        self.affords_its_modes() || self.is_surely_damped()
+    }
+
+    /// Whether damping bounds all motions; of a disk it may not reach every wave.
+    fn is_surely_damped(&self) -> bool {
+        !self.is_travelling_wave() && self.structure.is_damped()
     }
 
     /// Whether the modes of the state in which all slips can be found.

@@ -23,7 +23,7 @@ use std::sync::Arc;
 /// Floor of the denominators of free modes, see [`Spectrum::weight`].
 const FREE_FLOOR: f64 = 1e-8;
 /// Damping, over the frequency of its mode, that is rounding of none.
-pub(super) const UNDAMPED: f64 = 1e-13;
+pub(super) const UNDAMPED: f64 = 1e-14;
 
 /// Natural frequencies below this share of the highest are those of rigid-body modes.
 const SLOWEST: f64 = 1e-9;

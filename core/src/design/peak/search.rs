@@ -278,9 +278,15 @@ impl<'a, 'b> Search<'a, 'b> {
         if ends || beyond(DOUBT).any(|(gap, _)| gap.closed) {
             return Some(Doubt::unsolved(self.failure.unwrap_or(PointStatus::Stalled)));
         }
-        // Also of resonances too narrow for numbers: what nothing bounds is known beforehand.
-        let open = |(_, ends): (_, &[Sample])| !self.envelope.is_shortest(ends);
-        let open = beyond(DOUBT).any(open) || beyond(UNRESOLVED).next().is_some();
+        let shortest = |(_, ends): &(_, &[Sample])| self.envelope.is_shortest(ends);
+        if let Some((_, ends)) = beyond(UNRESOLVED).find(shortest) {
+            // Where it is known to be bounded it is too narrow for numbers.
+            return Some(match self.balance.knows_what_has_no_bound() {
+                true => Doubt::unsolved(PointStatus::Stalled),
+                false => Doubt::unbounded(ends[0].at),
+            });
+        }
+        let open = beyond(DOUBT).any(|one| !shortest(&one));
         open.then(|| Doubt::unsolved(PointStatus::Stalled))
     }
 
