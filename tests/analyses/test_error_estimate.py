@@ -74,6 +74,30 @@ def test_estimates_beside_each_other_see_as_far_as_one_by_itself() -> None:
         assert (np.abs(error).sum(axis=0) < 5.0 * one.arrays.error_estimate[-1]).all()
 
 
+def test_an_estimate_of_one_harmonic_carries_a_factor_of_safety() -> None:
+    own = [21763.811, 40141.223, 49848.411, 60307.793, 37569.659, 11995.819, 10831.711, 4634.3984]
+    between = [20697.282, 19130.869, 29185.914, 30884.918, 5918.9178, 5973.8153, 4157.8076]
+    stiffness = np.diag(own) - np.diag(between, 1) - np.diag(between, -1)
+    mass = np.diag(
+        [1.2858202, 0.6865898, 1.4510495, 1.982992, 1.9708855, 0.8774275, 0.6161978, 0.814458]
+    )
+    names = [f"x{i}" for i in range(8)]
+    structure = ss.Structure(mass, stiffness, ss.ModalDamping(4.3055364e-4), names)
+    contacts = [
+        ss.Jenkins("x5", stiffness=8703358.8, slip_force=4.2264422),
+        ss.Jenkins("x7", stiffness=0.27778593, slip_force=0.35713266),
+        ss.Jenkins("x1", stiffness=0.61710479, slip_force=0.32486587),
+    ]
+    model = ss.Model(structure, contacts, [ss.Force("x4", 1.7497694)])
+    omega = [31.320584132769635]
+    error = ss.forced_response(model, omega, 121).arrays.displacement[0].copy()
+    one = ss.forced_response(model, omega, 1)
+    error[:2] -= one.arrays.displacement[0]
+    waves = np.exp(1j * np.outer(np.linspace(0.0, 2.0 * np.pi, 1025), np.arange(122)))
+    ratio = np.abs((waves @ error).real).max(axis=0) / one.arrays.error_estimate[0]
+    assert 1.0 < ratio.max() < 5.0
+
+
 @pytest.mark.parametrize(("order", "harmonics"), [(41, 7), (61, 15), (81, 27), (121, 27)])
 def test_estimates_see_the_mode_that_a_high_harmonic_meets(order: int, harmonics: int) -> None:
     stiffness = np.array([[2.0, -0.3], [-0.3, order**2]])

@@ -9,7 +9,7 @@ use super::forced::ForcedBalance;
 use super::neighbour::Neighbour;
 use super::settings::{Evaluation, HarmonicChoice, Resolution, SampleChoice, Settings};
 use super::solution::{Point, PointStatus};
-use crate::contact::{BoucWen, ContactLaw, Jenkins, Residual};
+use crate::contact::{BoucWen, ContactLaw, Cubic, Jenkins, Residual};
 use crate::fourier::{Harmonics, SampleTable};
 use crate::model::{Contact, Model};
 use crate::solve::{norm, System as _};
@@ -51,6 +51,19 @@ fn an_extended_balance_reaches_to_the_first_harmonic_past_the_last_mode() {
         assert!(extended.highest == highest && extended.has_two(), "{reach}: {}", extended.highest);
         assert!((extended.unseen - 1.0).abs() < 1e-12);
     }
+}
+
+/// They are solved in fewer steps.
+#[test]
+fn estimates_of_laws_without_slip_take_less() {
+    let models = [model(), under(Box::new(Cubic::new(80.0).unwrap()), Vec::new())];
+    let [slips, smooth] = [&models[0], &models[1]].map(|model| Effort::new(model, true, 1, 2));
+    assert!(smooth.allowed([5, 9]) < 0.7 * slips.allowed([5, 9]));
+    assert_eq!(smooth.allowed([7, 11]), slips.allowed([7, 11]));
+    let reaches = |effort: &Effort<'_>| {
+        Extension::new(effort, &Harmonics::new(1, true), 2.0, f64::INFINITY).highest
+    };
+    assert!(reaches(&smooth) < reaches(&slips));
 }
 
 #[test]
