@@ -1,5 +1,6 @@
 """A law whose steps ask nobody, as factorisations, whether to go on."""
 
+import threading
 import time
 
 import stickslip as ss
@@ -9,10 +10,13 @@ class Slow(ss.ContactLaw):
     """A spring whose steps take their time once an analysis runs."""
 
     pause = 0.0
+    pauses = threading.Event()
 
     def stiffness(self):
         return [[1e3]]
 
     def step(self, before, after, state):
-        time.sleep(self.pause)
+        if self.pause:
+            self.pauses.set()
+            time.sleep(self.pause)
         return 1e3 * after, state, ss.Tangents([[1.0]], [[0.0]], [[0.0]], [[0.0]], [[1e3]])

@@ -44,9 +44,7 @@ fn of_law(law: &dyn ContactLaw, slots: usize, load: &SlipLoad, tangent: bool) ->
     let coefficients = components * slots as f64;
     let rows = if load.active && tangent { components } else { 0.0 };
     let samples = 2.0 * (resolved as f64 + 1.0);
-    let rounds = load.rounds.max(1) as f64;
-    // What repeats tells its tangent in one round.
-    let derived = if load.repeated.is_some() { 1.0 } else { rounds };
+    let [rounds, derived] = [load.rounds, load.derived].map(|rounds| rounds.max(1) as f64);
     let values = PER_PRODUCT * coefficients + rounds * PER_SAMPLE;
     let steps = values + derived * rows * (PER_SAMPLE + PER_PRODUCT * coefficients);
     samples * (steps + PER_PROJECTION * rows / components * coefficients.powi(2))
@@ -187,7 +185,7 @@ mod tests {
         let law = BoucWen::new(1.0, 1.0, 1.5, 0.6).unwrap();
         let law = Aft::new(Box::new(law), 64).unwrap();
         let of = |rounds: usize| {
-            let load = SlipLoad { rounds, active: true, ..SlipLoad::default() };
+            let load = SlipLoad { rounds, derived: rounds, active: true, ..SlipLoad::default() };
             [false, true].map(|tangent| of_law(&law, 11, &load, tangent))
         };
         let ([value, tangent], [values, tangents]) = (of(1), of(50));

@@ -57,6 +57,8 @@ pub struct SlipLoad {
     pub repeated: Option<Repeated>,
     /// Rounds of a march until its state has repeated.
     pub rounds: usize,
+    /// Those that its tangent was carried along.
+    pub derived: usize,
     /// Panels of slip in two directions in the period that repeats.
     pub panels: usize,
     /// Panels that were solved for until then.
@@ -77,7 +79,7 @@ impl SlipLoad {
             self.tangent.resize(size * size, 0.0);
         }
         self.active = false;
-        (self.rounds, self.panels, self.solved) = (0, 0, 0);
+        (self.rounds, self.derived, self.panels, self.solved) = (0, 0, 0, 0);
     }
 
     /// Gives a tangent of zeros its room.

@@ -9,9 +9,11 @@ mod legendre;
 mod panel;
 mod row_sums;
 mod turning_points;
+mod unit_circle;
 
 pub use gradient::amplitude_gradient;
 pub use harmonics::Harmonics;
+pub use instants::Basis;
 pub use interval_sums::IntervalSums;
 pub(crate) use lanes::{cos_sin, doubled, rotate, sum, SERIES};
 pub use lanes::{Lanes, NODES};

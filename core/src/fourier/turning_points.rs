@@ -1,7 +1,8 @@
 //! Turning points of a trigonometric series: bracketed on samples, then located exactly.
 
-use super::instants::Instants;
+use super::instants::{Basis, Instants};
 use super::row_sums::{padded, RowSums};
+use super::unit_circle::unit_circle;
 use super::Harmonics;
 use pulp::NullaryFnOnce;
 use std::sync::Arc;
@@ -62,13 +63,7 @@ impl SampleTable {
         let quarter = stride * (SAMPLES_PER_HARMONIC / COARSER * resolved.max(4)).div_ceil(4);
         // The angles of all orders are multiples of the same step.
         let count = 4 * quarter;
-        let step = std::f64::consts::TAU / count as f64;
-        let mut unit: Vec<_> = (0..quarter).map(|i| (i as f64 * step).sin_cos()).collect();
-        // A quarter of the period later the sine is the cosine.
-        for i in quarter..count {
-            let (sin, cos) = unit[i - quarter];
-            unit.push((cos, -sin));
-        }
+        let unit = unit_circle(count);
         let row = padded(quarter + 1);
         let size = row * harmonics.oscillating().len();
         let (mut cos, mut sin) = (vec![0.0; size], vec![0.0; size]);
@@ -87,10 +82,9 @@ impl SampleTable {
         Self { harmonics, quarter, stride, cos, sin, instants: Instants::default() }
     }
 
-    /// The basis at the first `count` of `samples` equidistant instants of a period: instant after
-    /// instant, and function after function.
+    /// The basis at the first `count` of `samples` equidistant instants of a period, an even number.
     #[must_use]
-    pub fn basis(&self, samples: usize, count: usize) -> [Arc<[f64]>; 2] {
+    pub fn basis(&self, samples: usize, count: usize) -> Arc<Basis> {
         self.instants.basis(&self.harmonics, samples, count)
     }
 

@@ -67,6 +67,7 @@ impl<L: Deref<Target: ContactLaw>> HarmonicForce for Aft<L> {
             out.tangent.iter_mut().zip(&own.tangent).for_each(|(sum, own)| *sum += own);
             out.active |= own.active;
             out.rounds += own.rounds;
+            out.derived += own.derived;
         }
         if self.is_sum() {
             return;
@@ -85,14 +86,13 @@ impl<L: Deref<Target: ContactLaw>> HarmonicForce for Aft<L> {
             return keep(lost, harmonics, tangent, out);
         }
         let samples = sampled.unwrap_or_else(|| Samples::of(motion, self.samples));
-        let basis = |n: usize| &samples.basis[n * slots..(n + 1) * slots];
         if let Some((load, ends)) = self.stuck(&samples, motion.residual) {
             if harmonics.has_mean() {
                 out.value[0] = load;
                 out.active = ends.iter().any(|(_, slope)| *slope != 0.0);
                 out.make_room(tangent && out.active);
                 for (n, slope) in ends.into_iter().filter(|_| tangent && out.active) {
-                    let row = out.tangent.iter_mut().zip(basis(n));
+                    let row = out.tangent.iter_mut().zip(samples.basis(n));
                     row.for_each(|(entry, b)| *entry += slope * b);
                 }
             }
@@ -120,6 +120,7 @@ impl<L: Deref<Target: ContactLaw>> HarmonicForce for Aft<L> {
         if !self.write(&samples, &round, [tangent, false], slots, out) {
             out.make_room(true);
             self.differentiate(&samples, &begun, &round.restarts, slots, &mut out.tangent);
+            out.derived = out.rounds;
         }
         out.halve_means(harmonics);
     }

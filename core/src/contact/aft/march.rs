@@ -36,8 +36,8 @@ pub(super) struct Step {
 }
 
 impl Step {
-    /// None yet, in a state at the first instant.
-    fn first(samples: &Samples, state: Vec<f64>) -> Self {
+    /// None yet, from a state to the first instant.
+    pub(super) fn first(samples: &Samples, state: Vec<f64>) -> Self {
         let after = samples.at(0).to_vec();
         Self {
             state,
@@ -119,13 +119,13 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
         step
     }
 
-    /// The first instant in a state that repeats.
-    pub(super) fn step_from(&self, samples: &Samples, state: &[f64]) -> Step {
-        let u = samples.at(0);
-        let mut step = Step::first(samples, state.to_vec());
-        self.law.return_map(u, u, &mut step.state, &mut step.force, Some(&mut step.jacobian));
-        // A step to where it is may round.
-        step.state.copy_from_slice(state);
+    /// The first instant, reached by the last step of a round that repeats, from its states: a step to where it is
+    /// has no derivative of its own.
+    pub(super) fn wrapped(&self, samples: &Samples, states: &[f64]) -> Step {
+        let size = self.law.state_size();
+        let mut step = Step::first(samples, states[states.len() - size..].to_vec());
+        self.advance(samples, samples.count, &mut step, true);
+        step.state.copy_from_slice(&states[..size]);
         step
     }
 
@@ -163,7 +163,7 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
         told: Option<[&mut [f64]; 2]>,
     ) -> bool {
         if let Some([sum, out]) = told {
-            let (basis, weight) = (rate.basis(samples, n - 1), 2.0 / samples.count as f64);
+            let (basis, weight) = (samples.basis(n - 1), 2.0 / samples.count as f64);
             sum.iter_mut().zip(basis).for_each(|(sum, b)| *sum += weight * b);
             if !step.springs {
                 rate.add_direct(&step.jacobian, weight, basis, out);
@@ -289,7 +289,7 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
     ) {
         let mut step = self.start(samples, begun);
         let mut rate = Rate::new(self.law.stiffness(), self.law.state_stiffness(), slots);
-        rate.follow(&step.jacobian, None, rate.basis(samples, 0));
+        rate.follow(&step.jacobian, None, samples.basis(0));
         rate.begin(&step.jacobian, &begun.rate);
         let mut sum = vec![0.0; slots];
         let mut before = (step.state.clone(), rate.clone());
@@ -308,7 +308,7 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
                     }
                     let sign = if wraps { samples.sign } else { 1.0 };
                     if changes {
-                        let [before, after] = [n - 1, n].map(|n| rate.basis(samples, n));
+                        let [before, after] = [n - 1, n].map(|n| samples.basis(n));
                         rate.follow(&step.jacobian, Some(before), &scaled(after, sign));
                     }
                     rate.scale(sign);

@@ -2,7 +2,6 @@
 //! friction work.
 
 use super::restart::Restart;
-use super::samples::Samples;
 use crate::contact::return_map::ReturnMapJacobian;
 use crate::contact::Elastic;
 use faer::Mat;
@@ -32,11 +31,6 @@ impl Rate {
     /// Its rows, number of state by number of state.
     pub(super) fn rows(&self) -> &[f64] {
         &self.value
-    }
-
-    /// The basis at an instant, or at the first of the next span.
-    pub(super) fn basis<'s>(&self, samples: &'s Samples, n: usize) -> &'s [f64] {
-        &samples.basis[(n % samples.count) * self.slots..][..self.slots]
     }
 
     /// Whether it stays as it is through a step.

@@ -18,19 +18,20 @@ use std::ops::Deref;
 const TOGETHER: usize = 32;
 
 impl<L: Deref<Target: ContactLaw>> Aft<L> {
-    /// Adds the derivative of a march to a tangent from a state at the first instant that repeats; `false`
-    /// if it depends on what the march begins with.
+    /// Adds the derivative of a march to a tangent from the states of a round that repeats, instant after instant;
+    /// `false` if it depends on what the march begins with.
     pub(super) fn differentiate_repeated(
         &self,
         samples: &Samples,
-        state: &[f64],
+        states: &[f64],
         slots: usize,
         out: &mut [f64],
     ) -> bool {
-        let mut step = self.step_from(samples, state);
+        let size = self.law.state_size();
+        let mut step = self.wrapped(samples, states);
         let mut rate = Rate::new(self.law.stiffness(), self.law.state_stiffness(), slots);
-        let mut lap = LapDerivative::new(state.len());
-        let mut products = Products::new(self.law.displacements(), state.len(), slots);
+        let mut lap = LapDerivative::new(size);
+        let mut products = Products::new(self.law.displacements(), size, slots);
         let mut sum = vec![0.0; slots];
         for n in 1..=samples.count {
             let told = Some([&mut sum[..], &mut *out]);
@@ -43,13 +44,12 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
             sum.fill(0.0);
             if changes {
                 let sign = if wraps { samples.sign } else { 1.0 };
-                let [before, after] = [n - 1, n].map(|n| rate.basis(samples, n));
+                let [before, after] = [n - 1, n].map(|n| samples.basis(n));
                 rate.follow(&step.jacobian, Some(before), &scaled(after, sign));
                 lap.advance(&step.jacobian.by_state);
             }
         }
         products.sum_up(out);
-        let size = state.len();
         let mirrored = |i, j| samples.sign * lap.by[i * size + j];
         match Restart::at_fixed_point(&Mat::from_fn(size, size, mirrored)) {
             Some(Restart::FixedPoint(inverse)) => {
@@ -148,8 +148,8 @@ impl Products {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::super::samples::Samples;
-    use crate::contact::{Aft, Closure, ContactLaw, Coulomb, HarmonicForce as _, Motion};
-    use crate::contact::{Residual, SlipLoad};
+    use crate::contact::{Aft, BoucWen, Closure, ContactLaw, Coulomb, HarmonicForce as _, Jenkins};
+    use crate::contact::{Motion, Residual, SlipLoad};
     use crate::fourier::{Harmonics, SampleTable};
     use crate::test_numbers::random;
 
@@ -243,6 +243,45 @@ mod tests {
             assert_close(&warm.tangent, &cold.tangent, 1e-7, case);
         }
         assert!(slipped > 80 && told > 60 && resumed > 60, "{slipped} {told} {resumed}");
+    }
+
+    /// It is what all rounds carry along, and that lags behind the state which repeats.
+    #[test]
+    fn one_round_tells_the_tangent_of_every_law() {
+        let laws: [fn() -> Box<dyn ContactLaw>; 4] = [
+            || Box::new(Jenkins::new(150.0, 1.0).unwrap()),
+            || Box::new(BoucWen::new(150.0, 1.0, 1.5, 0.6).unwrap()),
+            || Box::new(Coulomb::new(1, 0.4, 150.0, None, Closure::Preload(4.0)).unwrap()),
+            || Box::new(Coulomb::new(1, 0.4, 150.0, Some(90.0), Closure::Preload(4.0)).unwrap()),
+        ];
+        for (index, law) in laws.into_iter().enumerate() {
+            let mut told = 0;
+            for case in 0..120 {
+                let table = SampleTable::new(Harmonics::new(5, index < 3 && case % 2 == 1));
+                let slots = table.harmonics().slots();
+                let count = law().displacements();
+                let displacement: Vec<f64> = (0..count * slots)
+                    .map(|i| 0.06 * random(case * 53 + i) / (1.0 + (i % slots) as f64))
+                    .collect();
+                let residual = Residual::FromRest;
+                let motion = Motion { table: &table, displacement: &displacement, residual };
+                let aft = Aft::new(law(), 64).unwrap();
+                let (samples, begun) = (Samples::of(motion, 64), aft.begin(motion));
+                let round = aft.march(&samples, &begun);
+                let mut of = [0; 2].map(|_| vec![0.0; displacement.len().pow(2)]);
+                if round.departure.is_some()
+                    && aft.differentiate_repeated(&samples, &round.state, slots, &mut of[0])
+                {
+                    told += 1;
+                    aft.differentiate(&samples, &begun, &round.restarts, slots, &mut of[1]);
+                    assert_close(&of[0], &of[1], 1e-8, case);
+                    let mut load = SlipLoad::default();
+                    aft.slip_load(motion, true, &mut load);
+                    assert_eq!(load.derived, 1);
+                }
+            }
+            assert!(told > 10, "law {index}: {told}");
+        }
     }
 
     /// A state that slip has left does not stay with a motion that sticks: the start decides.

@@ -1,5 +1,6 @@
 //! A round of a march, and what happens in it.
 
+use super::march::Step;
 use super::rate::FrictionWork;
 use super::restart::Restart;
 use super::samples::Samples;
@@ -57,6 +58,13 @@ impl Round {
             moves: false,
             at_once: false,
         }
+    }
+
+    /// Whether it ends with the state that it has begun with; what has none has nothing to forget.
+    fn repeats(&self) -> bool {
+        let begun = &self.state[..self.end.len()];
+        let periodic = distance(&self.end, begun) <= PERIODIC * self.largest;
+        !begun.is_empty() && (self.at_once || periodic)
     }
 
     /// Where the linearised round would end.
@@ -138,11 +146,12 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
     ) -> bool {
         let (count, stiffness) = (self.law.displacements(), self.law.stiffness());
         let begun = &round.state[..self.law.state_size()];
-        let forgets = resumed || (round.at_once && round.departure.is_some());
+        let forgets = resumed || (round.departure.is_some() && round.repeats());
         let mut told = !tangent;
         if tangent && forgets {
             out.make_room(true);
-            told = self.differentiate_repeated(samples, begun, slots, &mut out.tangent);
+            told = self.differentiate_repeated(samples, &round.state, slots, &mut out.tangent);
+            out.derived = 1;
             if !told {
                 out.tangent.fill(0.0);
             }
@@ -150,7 +159,7 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
         if !told && resumed {
             return false;
         }
-        if told && (resumed || (tangent && forgets)) {
+        if told && round.at_once && (resumed || (tangent && forgets)) {
             out.repeated = Some(Repeated { state: begun.to_vec(), within: PERIODIC });
         }
         out.active = true;
@@ -174,7 +183,7 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
         let couples = |element: &Element| element.law.planes().is_empty();
         let coupled = self.law.elements().is_some_and(|elements| elements.iter().all(couples));
         let friction = FrictionWork::new(self.law.stiffness(), coupled);
-        let mut step = self.step_from(samples, &round.state[..self.law.state_size()]);
+        let mut step = Step::first(samples, round.state[..self.law.state_size()].to_vec());
         let (mut slipping, mut work) = (vec![0.0; count], vec![0.0; count]);
         let (mut before, mut du) = (vec![0.0; count], vec![0.0; count]);
         for n in 1..=samples.count {

@@ -1,6 +1,7 @@
 //! Displacements at the equidistant instants of a march.
 
 use crate::contact::Motion;
+use crate::fourier::Basis;
 use crate::solve::dot;
 use std::sync::Arc;
 
@@ -13,9 +14,7 @@ pub struct Samples {
     pub count: usize,
     /// −1 if the second half of the period mirrors the first.
     pub sign: f64,
-    pub basis: Arc<[f64]>,
-    /// The basis, function after function.
-    functions: Arc<[f64]>,
+    basis: Arc<Basis>,
     /// Instant after instant.
     pub displacement: Vec<f64>,
 }
@@ -27,15 +26,20 @@ impl Samples {
         let slots = harmonics.slots().max(1);
         let half = harmonics.half_wave();
         let count = if half { samples / 2 } else { samples };
-        let [basis, functions] = motion.table.basis(samples, count);
+        let basis = motion.table.basis(samples, count);
         let mut displacement = vec![0.0; motion.displacement.len() / slots * count];
         pulp::Arch::new().dispatch(Sample {
             all: motion.displacement,
             sizes: [slots, count],
-            functions: &functions,
+            functions: basis.functions(),
             displacement: &mut displacement,
         });
-        Self { count, sign: if half { -1.0 } else { 1.0 }, basis, functions, displacement }
+        Self { count, sign: if half { -1.0 } else { 1.0 }, basis, displacement }
+    }
+
+    /// The basis at instant n, or at the first of the next span.
+    pub(super) fn basis(&self, n: usize) -> &[f64] {
+        self.basis.at(n % self.count)
     }
 
     /// Displacements at instant n.
@@ -64,7 +68,7 @@ impl pulp::NullaryFnOnce for Project<'_> {
     fn call(self) {
         let count = self.samples.count;
         let weight = 2.0 / count as f64;
-        let functions = self.samples.functions.chunks_exact(count.max(1));
+        let functions = self.samples.basis.functions().chunks_exact(count.max(1));
         for (coefficient, function) in self.series.iter_mut().zip(functions) {
             *coefficient = weight * dot(self.values, function);
         }

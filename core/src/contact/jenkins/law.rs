@@ -176,23 +176,24 @@ impl ContactLaw for Jenkins {
         after: &[f64],
         state: &mut [f64],
         force: &mut [f64],
-        jacobian: Option<&mut ReturnMapJacobian>,
+        mut jacobian: Option<&mut ReturnMapJacobian>,
     ) {
         let count = self.sliders.len();
-        let mut sticks = vec![0.0; count];
-        for (i, slider) in self.sliders.iter().enumerate() {
-            slider.increment(before, after, &mut state[i..=i], Some(&mut sticks[i..=i]));
+        if let Some(jacobian) = &mut jacobian {
+            jacobian.reset(1, count);
         }
-        force[0] = state.iter().sum();
-        let Some(jacobian) = jacobian else { return };
-        jacobian.reset(1, count);
         for (i, slider) in self.sliders.iter().enumerate() {
-            jacobian.by_state[i * count + i] = sticks[i];
-            jacobian.by_after[i] = sticks[i] * slider.stiffness;
+            let mut sticks = [0.0];
+            slider.increment(before, after, &mut state[i..=i], Some(&mut sticks));
+            let Some(jacobian) = &mut jacobian else { continue };
+            jacobian.by_state[i * count + i] = sticks[0];
+            jacobian.by_after[i] = sticks[0] * slider.stiffness;
             jacobian.by_before[i] = -jacobian.by_after[i];
             jacobian.force_by_state[i] = 1.0;
         }
-        jacobian.slipping[0] = self.weighted(|i| 1.0 - sticks[i]);
+        force[0] = state.iter().sum();
+        let Some(jacobian) = jacobian else { return };
+        jacobian.slipping[0] = self.weighted(|i| 1.0 - jacobian.by_state[i * (count + 1)]);
     }
 
     /// Sliders of one contact are moved together: of several that stick the stiffest tells how far.
