@@ -141,8 +141,8 @@ impl<'a> ForcedBalance<'a> {
         (effort, whole): (&Effort<'_>, Extension),
     ) -> Result<Option<Vec<f64>>, Error> {
         let harmonics = &solution.harmonics;
-        let follows = whole.has_two() && self.control.is_fixed();
-        if follows {
+        let follows = whole.has_two() && !self.control.harmonics_climb();
+        if follows && self.control.is_fixed() {
             let (discarded, of) = (whole.discarded(harmonics), self.model.compliance());
             // As many points go on as solutions cost what an estimate does; all that may of a ring.
             let time = whole.account.of(false);

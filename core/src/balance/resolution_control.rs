@@ -82,7 +82,12 @@ impl ResolutionControl {
 
     /// Whether there is nothing to choose.
     pub(super) fn is_fixed(&self) -> bool {
-        self.settings.harmonics != HarmonicChoice::Auto && !self.samples_climb()
+        !self.harmonics_climb() && !self.samples_climb()
+    }
+
+    /// Whether the number of harmonics is chosen.
+    pub(super) fn harmonics_climb(&self) -> bool {
+        self.settings.harmonics == HarmonicChoice::Auto
     }
 
     /// Whether the number of samples is chosen.

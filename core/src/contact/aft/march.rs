@@ -240,15 +240,24 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
         }
     }
 
-    /// Takes a round step by step, with its derivative if it is asked for.
+    /// Takes a round step by step, with its derivative if it is asked for; without, only until it meets the round
+    /// before: from there on it is the same.
     fn pass(&self, samples: &Samples, step: &mut Step, derived: bool, round: &mut Round) {
         let mut lap = derived.then(|| LapDerivative::new(self.law.state_size()));
         let (count, size) = (self.law.displacements(), self.law.state_size());
         let departs = self.departs();
+        let before = (round.largest, round.departure);
         (round.largest, round.departure) = (0.0, None);
         for n in 1..=samples.count {
             let old = (n - 1) * count;
-            round.state[(n - 1) * size..n * size].copy_from_slice(&step.state);
+            let known = &mut round.state[(n - 1) * size..n * size];
+            if lap.is_none() && size > 0 && *known == *step.state {
+                round.largest = round.largest.max(before.0);
+                round.departure = round.departure.max(before.1.filter(|last| *last >= n - 1));
+                step.state.clone_from(&round.end);
+                return self.settle(samples, step);
+            }
+            known.copy_from_slice(&step.state);
             round.force[old..old + count].copy_from_slice(&step.force);
             // Once it has slipped, forces are enough unless more is asked for.
             let derived = !round.slipped || lap.is_some();

@@ -62,8 +62,71 @@ impl Restart {
 mod tests {
     use super::super::round::{distance, PERIODIC};
     use super::super::samples::Samples;
-    use crate::contact::{Aft, BoucWen, Closure, ContactLaw, Coulomb, Motion, Residual};
+    use crate::contact::aft::law::of_the_law;
+    use crate::contact::return_map::ReturnMapJacobian;
+    use crate::contact::{Aft, BoucWen, Closure, ContactLaw, Coulomb, Jenkins, Motion, Residual};
     use crate::fourier::{Harmonics, SampleTable};
+    use faer::Mat;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+    use std::sync::Arc;
+
+    /// A Jenkins element that counts its steps.
+    #[derive(Debug)]
+    struct Counted {
+        law: Jenkins,
+        steps: Arc<AtomicUsize>,
+    }
+
+    impl ContactLaw for Counted {
+        of_the_law! {
+            name() -> &'static str;
+            displacements() -> usize;
+            state_size() -> usize;
+            stiffness() -> Mat<f64>;
+            state_stiffness() -> Mat<f64>;
+            is_odd() -> bool;
+            is_monotone() -> bool;
+            limits() -> Vec<f64>;
+            with_scaled_stiffness(share: f64) -> Box<dyn ContactLaw>;
+            with_scaled_forces(factor: f64) -> Box<dyn ContactLaw>;
+        }
+
+        fn return_map(
+            &self,
+            before: &[f64],
+            after: &[f64],
+            state: &mut [f64],
+            force: &mut [f64],
+            jacobian: Option<&mut ReturnMapJacobian>,
+        ) {
+            self.steps.fetch_add(1, Ordering::Relaxed);
+            self.law.return_map(before, after, state, force, jacobian);
+        }
+    }
+
+    /// A round that meets the one before it is the same from there on.
+    #[test]
+    fn what_slips_is_known_to_repeat_from_its_first_slip_on() {
+        for half_wave in [false, true] {
+            let table = SampleTable::new(Harmonics::new(1, half_wave));
+            let displacement = if half_wave { vec![0.8, -0.5] } else { vec![0.1, 0.8, -0.5] };
+            let residual = Residual::FromRest;
+            let motion = Motion { table: &table, displacement: &displacement, residual };
+            let law = Jenkins::new(1.0, 0.3).unwrap();
+            let steps = Arc::new(AtomicUsize::new(0));
+            let aft = Aft::new(Box::new(Counted { law, steps: Arc::clone(&steps) }), 128).unwrap();
+            let samples = Samples::of(motion, 128);
+            let round = aft.march(&samples, &aft.begin(motion));
+            let taken = steps.load(Ordering::Relaxed);
+            assert!(round.restarts.len() == 2 && taken < samples.count * 8 / 5, "{taken}");
+            // One more round changes nothing.
+            let mut step = aft.wrapped(&samples, &round.state);
+            for n in 1..=samples.count {
+                assert_eq!(step.state, round.state[n - 1..n]);
+                aft.advance(&samples, n, &mut step, false);
+            }
+        }
+    }
 
     /// A motion to and fro pushes the slider sideways at either end, by less and less: in the end it
     /// is as far from both as its spring reaches.
