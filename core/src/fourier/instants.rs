@@ -44,8 +44,12 @@ impl Basis {
     #[must_use]
     pub fn at(&self, n: usize) -> &[f64] {
         let rows = self.rows.get_or_init(|| {
-            let of = |n: usize| self.functions.iter().skip(n).step_by(self.count);
-            (0..self.count).flat_map(of).copied().collect()
+            let mut rows = vec![0.0; self.functions.len()];
+            for (n, row) in rows.chunks_exact_mut(self.slots.max(1)).enumerate() {
+                let functions = self.functions.chunks_exact(self.count);
+                row.iter_mut().zip(functions).for_each(|(entry, function)| *entry = function[n]);
+            }
+            rows
         });
         &rows[n * self.slots..(n + 1) * self.slots]
     }

@@ -19,9 +19,13 @@ impl LapDerivative {
         if is_identity(step, size) {
             return;
         }
-        for (at, entry) in self.room.iter_mut().enumerate() {
-            let (row, column) = (at / size * size, at % size);
-            *entry = (0..size).map(|k| step[row + k] * self.by[k * size + column]).sum();
+        self.room.fill(0.0);
+        for (row, shares) in self.room.chunks_exact_mut(size).zip(step.chunks_exact(size)) {
+            // Laws that remember much change little of it in a step.
+            for (k, share) in shares.iter().enumerate().filter(|(_, share)| **share != 0.0) {
+                let old = &self.by[k * size..(k + 1) * size];
+                row.iter_mut().zip(old).for_each(|(entry, old)| *entry += share * old);
+            }
         }
         std::mem::swap(&mut self.by, &mut self.room);
     }

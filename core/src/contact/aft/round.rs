@@ -63,8 +63,7 @@ impl Round {
     /// Whether it ends with the state that it has begun with; what has none has nothing to forget.
     fn repeats(&self) -> bool {
         let begun = &self.state[..self.end.len()];
-        let periodic = distance(&self.end, begun) <= PERIODIC * self.largest;
-        !begun.is_empty() && (self.at_once || periodic)
+        !begun.is_empty() && distance(&self.end, begun) <= PERIODIC * self.largest
     }
 
     /// Where the linearised round would end.
@@ -146,7 +145,10 @@ impl<L: Deref<Target: ContactLaw>> Aft<L> {
     ) -> bool {
         let (count, stiffness) = (self.law.displacements(), self.law.stiffness());
         let begun = &round.state[..self.law.state_size()];
-        let forgets = resumed || (round.departure.is_some() && round.repeats());
+        // What the round makes of its begin takes as long as so many coefficients; all rounds may take less.
+        let few = round.end.len() <= (round.restarts.len() - 1) * count * slots;
+        let repeats = round.at_once || (few && round.repeats());
+        let forgets = resumed || (round.departure.is_some() && repeats);
         let mut told = !tangent;
         if tangent && forgets {
             out.make_room(true);
