@@ -6,6 +6,7 @@ use super::rate::{follows, is_elastic, Rate};
 use super::restart::Restart;
 use super::round::{distance, Round, PERIODIC};
 use super::samples::Samples;
+use super::step::Step;
 use crate::contact::periodic_march::SLOW;
 use crate::contact::return_map::ReturnMapJacobian;
 use crate::contact::{Aft, AssumedStart, ContactLaw, Motion, Residual, Unslipped};
@@ -19,37 +20,6 @@ const MOST_ROUNDS: usize = 200;
 const SMALL: f64 = 1e-7;
 /// Rounds after which slip is taken to recur, so that its fixed point is sought.
 const PUSHES: usize = 3;
-
-/// What a march takes from instant to instant.
-pub(super) struct Step {
-    pub(super) state: Vec<f64>,
-    pub(super) force: Vec<f64>,
-    pub(super) jacobian: ReturnMapJacobian,
-    /// Displacements at the end, in the span or mirrored behind it.
-    pub(super) after: Vec<f64>,
-    /// The derivative of all steps that are those of the spring, if there has been one.
-    pub(super) spring: Option<ReturnMapJacobian>,
-    /// Whether that is the derivative at hand.
-    pub(super) springs: bool,
-    /// Derivative of the force in the state before the last step of [`Aft::advance_derived`].
-    pub(super) force_by_state: Vec<f64>,
-}
-
-impl Step {
-    /// None yet, from a state to the first instant.
-    pub(super) fn first(samples: &Samples, state: Vec<f64>) -> Self {
-        let after = samples.at(0).to_vec();
-        Self {
-            state,
-            force: vec![0.0; after.len()],
-            jacobian: ReturnMapJacobian::default(),
-            after,
-            spring: None,
-            springs: false,
-            force_by_state: Vec::new(),
-        }
-    }
-}
 
 impl<L: Deref<Target: ContactLaw>> Aft<L> {
     /// The parts of a sum of laws: what one of them keeps while it never slips is its own.

@@ -9,6 +9,7 @@ mod repeated;
 mod restart;
 mod round;
 mod samples;
+mod step;
 
 pub(super) use law::of_the_law;
 pub use law::Aft;

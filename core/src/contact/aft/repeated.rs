@@ -149,7 +149,7 @@ impl Products {
 mod tests {
     use super::super::samples::Samples;
     use crate::contact::{Aft, BoucWen, Closure, ContactLaw, Coulomb, HarmonicForce as _, Jenkins};
-    use crate::contact::{Motion, Residual, SlipLoad};
+    use crate::contact::{Masing, Motion, Residual, SlipLoad};
     use crate::fourier::{Harmonics, SampleTable};
     use crate::test_numbers::random;
 
@@ -281,6 +281,24 @@ mod tests {
                 }
             }
             assert!(told > 10, "law {index}: {told}");
+        }
+    }
+
+    /// What one round makes of many numbers takes longer than all rounds do for few coefficients.
+    #[test]
+    fn laws_that_remember_much_are_derived_along_all_rounds() {
+        let table = SampleTable::new(Harmonics::new(9, true));
+        let mut displacement = [0.0; 10];
+        (displacement[0], displacement[1]) = (0.02, -0.01);
+        let residual = Residual::FromRest;
+        let motion = Motion { table: &table, displacement: &displacement, residual };
+        let law = Masing::iwan(150.0, 1.0, -0.5, 2.0).unwrap();
+        let few = law.with_memory(4).unwrap();
+        for (law, one) in [(Box::new(law) as Box<dyn ContactLaw>, false), (few, true)] {
+            let mut load = SlipLoad::default();
+            Aft::new(law, 64).unwrap().slip_load(motion, true, &mut load);
+            assert!(load.active && load.rounds > 1);
+            assert_eq!(load.derived == 1, one, "{} of {}", load.derived, load.rounds);
         }
     }
 

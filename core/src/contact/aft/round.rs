@@ -1,9 +1,9 @@
 //! A round of a march, and what happens in it.
 
-use super::march::Step;
 use super::rate::FrictionWork;
 use super::restart::Restart;
 use super::samples::Samples;
+use super::step::Step;
 use crate::contact::{Aft, ContactLaw, Element, Lap, Repeated, SlipLoad};
 use faer::Mat;
 use std::ops::Deref;
