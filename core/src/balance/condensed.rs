@@ -223,7 +223,21 @@ impl<'a> Condensed<'a> {
             let range = model.points()[index].clone();
             law.summary(self.motion(index, x), &mut point.contacts[range]);
         }
+        point.from_stuck = self.apart_from_stuck(x);
         Ok(point)
+    }
+
+    /// Largest distance of the vibration of a contact point from that without slip, over its size: soft contacts that
+    /// move far say nothing of stiff ones.
+    fn apart_from_stuck(&self, x: &[f64]) -> f64 {
+        let (slots, offset) = (self.harmonics().slots(), self.harmonics().offset());
+        let points = x.chunks_exact(slots).zip(self.stuck.chunks_exact(slots));
+        let far = points.map(|(x, stuck)| {
+            let apart =
+                x[offset..].iter().zip(&stuck[offset..]).map(|(x, stuck)| (x - stuck).powi(2));
+            (apart.sum::<f64>() / x[offset..].iter().map(|x| x * x).sum::<f64>()).sqrt()
+        });
+        far.fold(f64::NAN, f64::max)
     }
 
     /// Adds `share` times the derivative of the contact forces in a parameter of a law at fixed

@@ -2,21 +2,20 @@
 
 use super::modal_work::{of_step, products_within, suits, suits_laws};
 use super::ring::RingNewton;
+use super::solution::Point;
 use crate::fourier::Harmonics;
 use crate::model::Model;
 use crate::structure::Compliance;
 
 /// Effort of an estimate over that of the Newton steps of a solution from nothing, both as reckoned, and over that of
 /// its compliances and displacements as long as these are the lesser part; else they cost no more than there. Measured
-/// on random chains of 1 to 40 contacts, estimates take 0.36 times as long as solutions in the median, and longer, up to
-/// 1.13 times, at 5 of 3637.
+/// on random chains of 1 to 6 contacts, estimates take 0.32 times as long as the rest in the median, and longer, 1.31
+/// times, at 1 of 1440.
 const ALLOWED: f64 = 1.3;
 /// The same of solutions up to this harmonic, whose steps are short of what is not reckoned, by themselves and along a
 /// curve.
 const FEW: usize = 5;
-const ALLOWED_OF_FEW: [f64; 2] = [0.96, 0.95];
-/// The same of laws without slip, by themselves: they take half as many steps and are evaluated sooner.
-const ALLOWED_OF_SMOOTH: f64 = 0.6;
+const ALLOWED_OF_FEW: [f64; 2] = [0.85, 0.9];
 /// The same of a few nodes or faces, whose laws and tangents take more than is reckoned.
 const ALLOWED_OF_COUPLED: f64 = 2.0;
 /// The same of a ring, of which nearly all is reckoned, by itself and along a curve.
@@ -33,9 +32,22 @@ const ALLOWED_ALONG: f64 = 1.2;
 /// much once more.
 const WORTH: f64 = 0.6;
 
+/// Newton steps that the solution of a point with slip takes from the motion without slip, the last ones without a
+/// tangent of their own: more, the farther that is, from none to as far as the motion is large. Measured on 500 random
+/// chains those at a tenth of that take two or three tangents, but with less than this the estimates of few harmonics
+/// do not reach the modes that harmonics above them meet.
+const OF_SOLUTION: [f64; 2] = [4.5, 6.0];
+/// The same of laws without slip, whose tangents are those of the way: half as many, and one of a nearly linear motion.
+const OF_SMOOTH: [f64; 2] = [1.3, 3.0];
+
+/// Share of a second step of an estimate that looks at what the first one leaves.
+const OF_LOOK: f64 = 0.2;
+
 /// Newton steps with a tangent of their own, and evaluations of the laws without, that a solution beside another
 /// one takes on coarse curves. That of another method is judged alike.
 const BESIDE: f64 = 2.5;
+/// The same of laws without slip.
+const BESIDE_OF_SMOOTH: f64 = 0.9;
 
 /// Share of the contacts that stick which the first step of an estimate may make slip.
 const BEGIN_TO_SLIP: f64 = 0.1;
@@ -67,6 +79,8 @@ pub(super) struct Effort<'a> {
     coupled: f64,
     /// Whether Jacobians are formed in any case.
     formed: bool,
+    /// How far the solution is from the motion without slip: 1 where it is as far as it is large, and where nobody knows.
+    far: f64,
 }
 
 impl<'a> Effort<'a> {
@@ -83,7 +97,14 @@ impl<'a> Effort<'a> {
         let part = if part < WORTH * whole { part } else { whole };
         let of_order = [whole, part, displacement];
         let coupled = coupled_points(model);
-        Self { model, half_wave, slipping, of_order, coupled, formed: false }
+        Self { model, half_wave, slipping, of_order, coupled, formed: false, far: 1.0 }
+    }
+
+    /// The same for the solution that a point has, by how far it is from the motion without slip. Estimates
+    /// of rings take no more than their solutions without that.
+    pub(super) fn of(&self, point: &Point) -> Self {
+        let ring = self.compliance().ring().is_some();
+        Self { far: if ring { 1.0 } else { point.from_stuck.min(1.0) }, ..*self }
     }
 
     /// The same where Jacobians are formed in any case.
@@ -118,7 +139,8 @@ impl<'a> Effort<'a> {
     /// What a solution with harmonics up to `highest` that starts from its neighbour allows the estimates along their
     /// curve.
     pub(super) fn earned(&self, highest: usize) -> f64 {
-        let steps = BESIDE * (self.step(highest) + self.values(highest));
+        let beside = if self.slips() { BESIDE } else { BESIDE_OF_SMOOTH };
+        let steps = beside * (self.step(highest) + self.values(highest));
         let ring = self.compliance().ring().is_some();
         let share = match highest {
             _ if ring => ALLOWED_OF_RING,
@@ -147,10 +169,8 @@ impl<'a> Effort<'a> {
             ALLOWED_OF_COUPLED
         } else if highest > FEW {
             ALLOWED
-        } else if self.model.slip_limits().any(f64::is_finite) {
-            ALLOWED_OF_FEW[0]
         } else {
-            ALLOWED_OF_SMOOTH
+            ALLOWED_OF_FEW[0]
         }
     }
 
@@ -241,6 +261,22 @@ impl<'a> Effort<'a> {
         let laws = (1.0 + self.coupled) * self.values(order);
         let step = formed_step(2.0 * self.slipping as f64);
         OF_SINGLE * (table + laws + self.of_order[1] + self.of_order[2] + step)
+    }
+
+    fn slips(&self) -> bool {
+        self.model.slip_limits().any(f64::is_finite)
+    }
+
+    /// Of the Newton steps of a solution from the motion without slip.
+    pub(super) fn steps(&self, highest: usize) -> f64 {
+        let [near, far] = if self.slips() { OF_SOLUTION } else { OF_SMOOTH };
+        (near + (far - near) * self.far) * self.step(highest)
+    }
+
+    /// Share of a second step that an estimate takes: the look at what the first one leaves, and the more often all of
+    /// it, the farther the solution is from the motion without slip.
+    pub(super) fn of_second(&self) -> f64 {
+        OF_LOOK + (1.0 - OF_LOOK) * self.far
     }
 
     /// Of a Newton step in the harmonics up to `highest`.

@@ -1,6 +1,6 @@
 //! A point of the forced response with as many harmonics and samples as the tolerance asks for.
 
-use super::accuracy::PAST_LAST_MODE;
+use super::extension::PAST_LAST_MODE;
 use super::forced::ForcedBalance;
 use super::resolution_control::{beyond_modes, Decision};
 use super::scale::OF_HARMONICS;
@@ -143,6 +143,22 @@ impl ForcedBalance<'_> {
         self.scale.include(point);
         let error = self.scale.relative(point, OF_HARMONICS, sampling.iter().copied());
         self.control.lacking(point.resolution(), error).is_some()
+    }
+
+    /// Errors of which one that is exceeded asks for more harmonics, if these are chosen and there are more. Where laws
+    /// are not monotone the whole estimate tells motions apart.
+    pub(super) fn enough_for_more(&mut self, point: &Point) -> Vec<f64> {
+        if !self.control.harmonics_climb() || !self.model.is_monotone() {
+            return Vec::new();
+        }
+        self.scale.include(point);
+        let more = self.control.has_more(point.harmonics);
+        let tolerance = self.settings.tolerance;
+        if more {
+            self.scale.most(point, OF_HARMONICS, tolerance)
+        } else {
+            Vec::new()
+        }
     }
 
     /// Order beyond which no mode takes part; there is none where degrees of freedom without mass follow all of them.

@@ -1,12 +1,14 @@
 //! How wrong a solution of the condensed equations is.
 
-use super::accuracy::{estimate, Estimate, Extension};
+use super::accuracy::{estimate, Estimate};
 use super::condensed::Condensed;
 use super::effort::Effort;
 use super::evaluation::Evaluated;
+use super::extension::Extension;
 use super::forced::ForcedBalance;
 use super::resonances::{self, Resonances};
 use super::sampling::{finer_than, sampling_errors};
+use super::scale::OF_HARMONICS;
 use super::settings::Method;
 use super::smooth_piece::IN_A_ROW;
 use super::solution::Point;
@@ -47,20 +49,22 @@ impl<'a> ForcedBalance<'a> {
         let sampling = self.sampling_errors(equations, x, point)?;
         if !whole && self.lacks_samples(point, &sampling) {
             (point.error_estimate, point.sampling_error) = (sampling.clone(), sampling);
+            point.partial = true;
             return Ok(true);
         }
-        let done = self.estimate_truncation(equations.harmonics(), x, Some(&*equations), point)?;
+        let most = if whole { Vec::new() } else { self.enough_for_more(point) };
+        let solved = Some(&*equations);
+        let done = self.estimate_truncation(equations.harmonics(), x, solved, point, &most)?;
         add_sampling(point, sampling);
         Ok(done)
     }
 
-    /// Completes the estimate of a point that lacked samples, but is the last one all the same.
+    /// Completes the estimate of a point that lacked harmonics or samples, but is the last one all the same.
     pub(super) fn complete_estimate(&mut self, point: &mut Point) -> Result<(), Error> {
-        let lacks = point.samples.is_some() && point.error_estimate == point.sampling_error;
-        let solution = point.unknowns.as_ref().filter(|_| lacks && point.is_solved());
+        let solution = point.unknowns.as_ref().filter(|_| point.partial && point.is_solved());
         let Some(solution) = solution.cloned() else { return Ok(()) };
         let sampling = std::mem::take(&mut point.sampling_error);
-        self.estimate_truncation(&solution.harmonics, &solution.values, None, point)?;
+        self.estimate_truncation(&solution.harmonics, &solution.values, None, point, &[])?;
         add_sampling(point, sampling);
         Ok(())
     }
@@ -83,35 +87,40 @@ impl<'a> ForcedBalance<'a> {
     }
 
     /// Writes what the discarded harmonics could change in a solution `x`, of these equations if
-    /// they are at hand; `false` if the analysis is to end.
+    /// they are at hand, or no more than that they change one DOF by more than the `most` that is given; `false` if the
+    /// analysis is to end.
     pub(super) fn estimate_truncation(
         &mut self,
         harmonics: &Harmonics,
         x: &[f64],
         solved: Option<&Condensed<'_>>,
         point: &mut Point,
+        most: &[f64],
     ) -> Result<bool, Error> {
+        point.partial = false;
         point.error_estimate = vec![0.0; self.observe.len()];
         point.sampling_error = vec![0.0; self.observe.len()];
         let slipping = self.nonlinear_points(point);
         let (half_wave, observed) = (harmonics.half_wave(), self.observe.len());
         let given = self.evaluated(None)?;
-        let effort = Effort::new(&given, half_wave, slipping, observed);
-        // Where harmonics are chosen, every estimate decides by itself. Points of a curve whose frequency is
-        // unknown take more than their steps.
-        let fixed = self.control.is_fixed();
-        let counts = fixed && solved.is_none_or(|solved| !solved.slopes);
+        let effort = Effort::new(&given, half_wave, slipping, observed).of(point);
+        // Points of a curve whose frequency is unknown take more than their steps.
+        let counts = !self.control.samples_climb() && solved.is_none_or(|solved| !solved.slopes);
         let earned = counts.then(|| effort.earned(harmonics.highest()));
         if slipping == 0 || solved.is_some_and(|solved| leaves_springs(solved, x)) {
             self.neighbour.save(point, earned);
             return Ok(true);
         }
         let credit = self.neighbour.credit(point, earned);
-        let whole = Extension::new(&effort, harmonics, point.omega, credit);
+        let whole = Extension::new(&effort, harmonics, point.omega, credit).up_to(most);
         let solution = Unknowns { harmonics: harmonics.clone(), values: x.to_vec() };
         let Some(mut errors) = self.errors(&solution, solved, point, (&effort, whole))? else {
             return Ok(false);
         };
+        if point.partial {
+            point.error_estimate = errors;
+            return Ok(true);
+        }
         let meets =
             Resonances::beyond(whole.highest, whole.single, &effort, harmonics, point.omega);
         self.neighbour.pay(meets.effort);
@@ -138,35 +147,31 @@ impl<'a> ForcedBalance<'a> {
         solution: &Unknowns,
         solved: Option<&Condensed<'_>>,
         point: &mut Point,
-        (effort, whole): (&Effort<'_>, Extension),
+        (effort, whole): (&Effort<'_>, Extension<'_>),
     ) -> Result<Option<Vec<f64>>, Error> {
-        let harmonics = &solution.harmonics;
-        let follows = whole.has_two() && !self.control.harmonics_climb();
-        if follows && self.control.is_fixed() {
-            let (discarded, of) = (whole.discarded(harmonics), self.model.compliance());
-            // As many points go on as solutions cost what an estimate does; all that may of a ring.
-            let time = whole.account.of(false);
-            let cost = time / effort.closely(harmonics.highest());
-            let ring = of.ring().is_some();
-            let in_a_row = if ring { IN_A_ROW } else { cost.ceil().max(1.0) as usize };
-            let (piece, own) = (&mut self.neighbour.piece, (in_a_row, time));
-            if let Some(errors) = piece.continued(point, solution, of, discarded, own) {
-                return Ok(Some(errors));
+        let follows = whole.has_two();
+        if follows && !self.control.samples_climb() {
+            let found = self.continued(solution, point, (effort, &whole));
+            if found.is_some() {
+                return Ok(found);
             }
         }
         let growth = if follows { self.neighbour.served(point) } else { None };
         let extension = if growth.is_some() { whole.beside() } else { whole };
-        let estimate = self.extended(solution, solved, point, (effort, extension))?;
-        let Some(Estimate { mut errors, first, keeps_states, ended_in_state, took_two, .. }) =
-            estimate
-        else {
+        let Some(estimate) = self.extended(solution, solved, point, (effort, extension))? else {
             return Ok(None);
         };
-        self.neighbour.pay(extension.account.of(took_two));
+        self.neighbour.pay(extension.account.of(estimate.took_two));
+        let Estimate { mut errors, first, keeps_states, ended_in_state, partial, .. } = estimate;
+        point.partial = partial;
         if let Some(growth) = growth.filter(|_| ended_in_state) {
             errors.iter_mut().zip(growth).for_each(|(error, by)| *error *= by);
+            if !self.may_lean(point, &errors) {
+                self.neighbour.forget();
+                return self.errors(solution, solved, point, (effort, whole));
+            }
         } else {
-            let told = follows && keeps_states;
+            let told = follows && keeps_states && !partial;
             self.neighbour.learn(point, &errors, told.then_some(&first[..]));
         }
         if self.control.is_fixed() {
@@ -174,6 +179,32 @@ impl<'a> ForcedBalance<'a> {
         }
         self.neighbour.note(point, solution.clone(), &errors);
         Ok(Some(errors))
+    }
+
+    /// What the discarded harmonics would change in a solution by how that has gone on along the curve; nothing if it
+    /// does not say.
+    fn continued(
+        &mut self,
+        solution: &Unknowns,
+        point: &Point,
+        (effort, whole): (&Effort<'_>, &Extension<'_>),
+    ) -> Option<Vec<f64>> {
+        let harmonics = &solution.harmonics;
+        let (discarded, of) = (whole.discarded(harmonics), self.model.compliance());
+        // As many points go on as solutions cost what an estimate does; all that may of a ring.
+        let time = whole.account.of(false);
+        let cost = time / effort.closely(harmonics.highest());
+        let ring = of.ring().is_some();
+        let in_a_row = if ring { IN_A_ROW } else { cost.ceil().max(1.0) as usize };
+        let (piece, own) = (&mut self.neighbour.piece, (in_a_row, time));
+        let found = piece.continued(point, solution, of, discarded, own)?;
+        self.may_lean(point, &found).then_some(found)
+    }
+
+    /// Whether an estimate may lean on those beside it: one that asks for more harmonics is made by itself.
+    fn may_lean(&self, point: &Point, errors: &[f64]) -> bool {
+        let relative = || self.scale.relative(point, OF_HARMONICS, errors.iter().copied());
+        !self.control.harmonics_climb() || relative() <= self.settings.tolerance
     }
 
     /// How wrong a solution is at its contacts: the largest change that the discarded harmonics would bring to
@@ -187,7 +218,7 @@ impl<'a> ForcedBalance<'a> {
         let given = self.evaluated(None).ok()?;
         let harmonics = &solution.harmonics;
         let effort = Effort::new(&given, harmonics.half_wave(), slipping, self.observe.len());
-        let extension = Extension::new(&effort, harmonics, point.omega, f64::INFINITY);
+        let extension = Extension::new(&effort.of(point), harmonics, point.omega, f64::INFINITY);
         let mut point = point.clone();
         let found = self.extended(&solution, None, &mut point, (&effort, extension)).ok()??;
         Some(found.contacts)
@@ -200,7 +231,7 @@ impl<'a> ForcedBalance<'a> {
         solution: &Unknowns,
         solved: Option<&Condensed<'_>>,
         point: &mut Point,
-        (effort, extension): (&Effort<'_>, Extension),
+        (effort, extension): (&Effort<'_>, Extension<'_>),
     ) -> Result<Option<Estimate>, Error> {
         let found = self.extended_to(solution, solved, point, extension)?;
         if extension.products.is_none() || !found.as_ref().is_some_and(Estimate::is_lost) {
@@ -218,7 +249,7 @@ impl<'a> ForcedBalance<'a> {
         solution: &Unknowns,
         solved: Option<&Condensed<'_>>,
         point: &mut Point,
-        extension: Extension,
+        extension: Extension<'_>,
     ) -> Result<Option<Estimate>, Error> {
         let (model, order) = self.resolving(point, extension.highest)?;
         let extension = extension.within(order);
@@ -255,7 +286,7 @@ impl<'a> ForcedBalance<'a> {
 
     /// What the changes by an extended balance count. DOFs without mass move with kinks: harmonics fall with the
     /// square of their order, and the error with the first power of H, so that it has a known share of it.
-    pub(super) fn unseen_of_massless(&self, kept: &Harmonics, extension: &Extension) -> f64 {
+    pub(super) fn unseen_of_massless(&self, kept: &Harmonics, extension: &Extension<'_>) -> f64 {
         if self.model.structure().massless().is_empty() {
             return 1.0;
         }

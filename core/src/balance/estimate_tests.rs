@@ -2,9 +2,9 @@
 
 #![allow(clippy::unwrap_used)]
 
-use super::accuracy::{Extension, PAST_LAST_MODE};
 use super::condensed::Condensed;
 use super::effort::Effort;
+use super::extension::{Extension, PAST_LAST_MODE};
 use super::forced::ForcedBalance;
 use super::neighbour::Neighbour;
 use super::settings::{Evaluation, HarmonicChoice, Resolution, SampleChoice, Settings};
@@ -58,12 +58,27 @@ fn an_extended_balance_reaches_to_the_first_harmonic_past_the_last_mode() {
 fn estimates_of_laws_without_slip_take_less() {
     let models = [model(), under(Box::new(Cubic::new(80.0).unwrap()), Vec::new())];
     let [slips, smooth] = [&models[0], &models[1]].map(|model| Effort::new(model, true, 1, 2));
-    assert!(smooth.allowed([5, 9]) < 0.7 * slips.allowed([5, 9]));
-    assert_eq!(smooth.allowed([7, 11]), slips.allowed([7, 11]));
+    let steps = |effort: &Effort<'_>| effort.steps(5) / effort.step(5);
+    assert!(steps(&smooth) < 0.7 * steps(&slips));
     let reaches = |effort: &Effort<'_>| {
         Extension::new(effort, &Harmonics::new(1, true), 2.0, f64::INFINITY).highest
     };
     assert!(reaches(&smooth) < reaches(&slips));
+}
+
+/// The nearer a solution is to the motion without slip, the fewer steps lead to it; a point of which nobody knows is far.
+#[test]
+fn estimates_of_nearly_linear_motions_take_less() {
+    let model = model();
+    let effort = Effort::new(&model, true, 1, 2);
+    let at = |from_stuck: f64| {
+        effort.of(&Point { from_stuck, ..Point::empty(2.0, PointStatus::Converged, 2, 1) })
+    };
+    let steps = [0.0, 0.1, 1.0, 7.0, f64::NAN].map(|far| at(far).steps(5));
+    assert!(steps[0] < steps[1] && steps[1] < 0.8 * steps[2]);
+    assert_eq!([steps[3], steps[4]], [steps[2], effort.steps(5)]);
+    // The look at what the first step leaves is nearly all of the second one.
+    assert!(at(0.0).of_second() < 0.5 && at(1.0).of_second() == 1.0);
 }
 
 #[test]
@@ -146,6 +161,30 @@ fn a_solution_that_lacks_samples_is_not_asked_for_its_harmonics() {
     let last = balance.solve(9.0, None).unwrap();
     assert!(last.is_solved() && last.samples > Some(32));
     assert!(last.error_estimate[0] > 2.0 * last.sampling_error[0]);
+}
+
+/// The first step of its estimate says so; as the last one it has all of it.
+#[test]
+fn a_solution_that_lacks_harmonics_takes_no_second_step() {
+    let law = || Box::new(Jenkins::new(80.0, 0.3).unwrap());
+    let load =
+        || HarmonicLoad { harmonic: 1, amplitude: vec![c64::new(2.0, 0.0), c64::new(0.0, 0.0)] };
+    let model = under(law(), vec![load()]);
+    let point = |harmonics: HarmonicChoice| {
+        let settings = Settings { harmonics, tolerance: 1e-6, ..Settings::default() };
+        let mut balance = ForcedBalance::new(&model, settings, &[0, 1]).unwrap();
+        let three = Resolution { harmonics: 3, samples: None };
+        let point = balance.attempt(three, 9.0, None).unwrap();
+        let mut whole = point.clone();
+        balance.complete_estimate(&mut whole).unwrap();
+        (point, whole)
+    };
+    let (given, same) = point(HarmonicChoice::Fixed(3));
+    let (first, whole) = point(HarmonicChoice::Auto);
+    assert!(given.is_solved() && !given.partial && first.partial && !whole.partial);
+    assert_eq!(given.error_estimate, same.error_estimate);
+    assert_eq!(whole.error_estimate, given.error_estimate);
+    assert!(first.error_estimate.iter().zip(&given.error_estimate).all(|(a, b)| a <= b));
 }
 
 /// A chain of 33 masses, 25 of them with a slider to ground, of stiffnesses over decades.

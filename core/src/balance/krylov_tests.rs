@@ -1,9 +1,9 @@
 //! Points solved by products with the modes are those of dense receptances.
 #![allow(clippy::unwrap_used)]
 
-use super::accuracy::Extension;
 use super::condensed::Condensed;
 use super::effort::Effort;
+use super::extension::Extension;
 use super::linear::Linear;
 use super::solution::PointStatus;
 use crate::contact::{

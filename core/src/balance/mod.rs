@@ -13,6 +13,7 @@ mod estimate;
 #[cfg(test)]
 mod estimate_tests;
 mod evaluation;
+mod extension;
 mod forced;
 mod formed;
 mod from_orbit;

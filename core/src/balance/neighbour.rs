@@ -104,11 +104,12 @@ impl Neighbour {
     }
 
     /// What the estimate of a point may take, whose solution has `earned` so much: without a limit where its
-    /// solution began far away, where slip begins, and where nobody knows what it took.
+    /// solution began far away or from fewer harmonics, where slip begins, and where nobody knows what it took.
     pub(super) fn credit(&mut self, point: &Point, earned: Option<f64>) -> f64 {
+        let climbs = self.account.is_some_and(|(at, _)| at == point.omega);
         let before = if self.earn(point, earned) { self.slips } else { 0 };
         self.slips = before + 1;
-        let limited = self.account.filter(|_| before >= LEADING);
+        let limited = self.account.filter(|_| before >= LEADING && !climbs);
         limited.map_or(f64::INFINITY, |(_, credit)| credit)
     }
 
@@ -148,6 +149,11 @@ impl Neighbour {
     /// Notes the estimate of a point, with its solution.
     pub(super) fn note(&mut self, point: &Point, solution: Unknowns, errors: &[f64]) {
         self.piece.note(Estimated::new(point, solution, errors));
+    }
+
+    /// Has the next point take an estimate as a whole.
+    pub(super) fn forget(&mut self) {
+        self.growth.clear();
     }
 
     /// Learns from a point at which an estimate was made as a whole, with the errors after its first step

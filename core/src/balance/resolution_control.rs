@@ -171,6 +171,11 @@ impl ResolutionControl {
         Some(self.allowed(harmonics, samples)).filter(|above| *above != at)
     }
 
+    /// Whether more harmonics than these may be chosen.
+    pub(super) fn has_more(&self, harmonics: usize) -> bool {
+        self.orders.last().is_some_and(|&last| harmonics < last)
+    }
+
     /// Has the next point begin with the harmonics of this one.
     pub(super) fn stay(&mut self, at: Resolution) {
         self.level.order = self.position(at);

@@ -54,16 +54,31 @@ impl Scale {
         floor: f64,
         errors: impl Iterator<Item = f64>,
     ) -> f64 {
-        let sizes = sizes(point);
+        let counted = errors.zip(self.against(point, floor)).enumerate();
+        let counted = counted.filter(|(dof, _)| self.counts(*dof));
+        largest(counted.map(|(_, (error, size))| error / size))
+    }
+
+    /// Errors of the DOFs of a point above which [`Scale::relative`] is above a share; infinite of those that do not
+    /// count.
+    pub(super) fn most(&self, point: &Point, floor: f64, share: f64) -> Vec<f64> {
+        let sizes = self.against(point, floor).into_iter().enumerate();
+        sizes
+            .map(|(dof, size)| if self.counts(dof) { share * size } else { f64::INFINITY })
+            .collect()
+    }
+
+    /// What the errors of the DOFs of a point count against.
+    fn against(&self, point: &Point, floor: f64) -> Vec<f64> {
+        let mut sizes = sizes(point);
         let known = self.largest.iter().enumerate().chain(sizes.iter().enumerate());
         let counted = known.filter(|(dof, _)| self.counts(*dof));
         let overall = counted.map(|(_, size)| *size).fold(0.0, f64::max);
-        let counted = errors.zip(&sizes).enumerate().filter(|(dof, _)| self.counts(*dof));
-        let relative = |(dof, (error, size)): (usize, (f64, &f64))| {
+        for (dof, size) in sizes.iter_mut().enumerate() {
             let own = self.largest.get(dof).copied().unwrap_or(0.0);
-            error / size.max(floor * own).max(NOISE * overall).max(f64::MIN_POSITIVE)
-        };
-        largest(counted.map(relative))
+            *size = size.max(floor * own).max(NOISE * overall).max(f64::MIN_POSITIVE);
+        }
+        sizes
     }
 
     /// Largest of the relative errors of a straight line between the last two of three points along a

@@ -91,7 +91,7 @@ fn solve(
     balance.profile.recovery += begin.elapsed();
     if estimate {
         let begin = Instant::now();
-        let done = balance.estimate_truncation(harmonics, &x, None, &mut point)?;
+        let done = balance.estimate_truncation(harmonics, &x, None, &mut point, &[])?;
         balance.profile.estimate += begin.elapsed();
         if !done {
             return Ok(balance.not_computed(omega));

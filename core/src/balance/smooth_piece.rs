@@ -21,6 +21,10 @@ pub(super) const IN_A_ROW: usize = 3;
 const SAME_MOTION: f64 = 0.25;
 /// The same of the share of the period in which it slips.
 const SAME_SLIP: f64 = 0.15;
+/// How far it may be from where it was going to by the point before, …
+const BEND: f64 = 0.01;
+/// … and over its change.
+const BEND_OF_CHANGE: f64 = 0.5;
 /// Change of the estimates of all DOFs from one point to the next up to which they go on, …
 const CHANGE: f64 = 1.5;
 /// … that of one of them, …
@@ -40,6 +44,15 @@ impl Estimated {
     pub(super) fn new(point: &Point, solution: Unknowns, errors: &[f64]) -> Self {
         let slip_fractions = slip_fractions(point).collect();
         Self { omega: point.omega, solution, slip_fractions, errors: errors.to_vec() }
+    }
+
+    /// Whether the slip of a point is about where it was going to from the point `before`, a `share` of that way on.
+    fn slips_on(&self, before: &Self, point: &Point, share: f64) -> bool {
+        let known = before.slip_fractions.iter().zip(&self.slip_fractions);
+        known.zip(slip_fractions(point)).all(|((before, last), now)| {
+            let bend = now - last - share * (last - before);
+            bend.abs() <= BEND + BEND_OF_CHANGE * (now - last).abs()
+        })
     }
 
     /// Whether a motion is the same but for its phase.
@@ -80,7 +93,7 @@ impl Estimated {
 /// The last two points with estimates of their own; few points without lie between them.
 #[derive(Default)]
 pub(super) struct SmoothPiece {
-    before: Option<(f64, Vec<f64>)>,
+    before: Option<Estimated>,
     last: Option<Estimated>,
     /// Points behind the last one that did without.
     went_on: usize,
@@ -91,7 +104,8 @@ pub(super) struct SmoothPiece {
 impl SmoothPiece {
     /// Notes a point with an estimate of its own.
     pub(super) fn note(&mut self, point: Estimated) {
-        self.before = self.last.take().map(|last| (last.omega, last.errors));
+        let last = self.last.take();
+        self.before = last.filter(|last| last.solution.harmonics == point.solution.harmonics);
         (self.last, self.went_on) = (Some(point), 0);
     }
 
@@ -105,8 +119,9 @@ impl SmoothPiece {
         discarded: Range<usize>,
         (in_a_row, time): (usize, f64),
     ) -> Option<Vec<f64>> {
-        let ((omega, errors), last) = self.before.as_ref().zip(self.last.as_ref())?;
-        let (behind, ahead) = (last.omega - omega, point.omega - last.omega);
+        let (earlier, last) = self.before.as_ref().zip(self.last.as_ref())?;
+        let errors = &earlier.errors;
+        let (behind, ahead) = (last.omega - earlier.omega, point.omega - last.omega);
         let near = ahead.abs() <= NEAR * last.omega && errors.len() == last.errors.len();
         let share = ahead / behind;
         if self.went_on >= in_a_row.min(IN_A_ROW) || !near || !(share > 0.0 && share <= STEPS) {
@@ -122,6 +137,7 @@ impl SmoothPiece {
         });
         if !(smooth
             && is_within(goes_on([size(errors), size(&last.errors)]), CHANGE)
+            && last.slips_on(earlier, point, share)
             && last.moves_as(point, solution))
         {
             return None;

@@ -120,6 +120,9 @@ pub struct Point {
     pub samples: Option<usize>,
     /// Residual, relative to the contact displacements.
     pub residual: f64,
+    /// Largest distance of the vibration of a contact point from that without slip, over its size; not a number where
+    /// nobody knows.
+    pub(super) from_stuck: f64,
     /// Newton iterations, homotopy included.
     pub iterations: usize,
     /// Amplitudes X_k of the observed DOFs, DOF after DOF, k = 0..=harmonics.
@@ -132,6 +135,8 @@ pub struct Point {
     pub error_estimate: Vec<f64>,
     /// The part of it that is due to the samples; zero of laws evaluated as they are \[m\].
     pub sampling_error: Vec<f64>,
+    /// Whether the estimate says no more than that harmonics or samples lack.
+    pub(super) partial: bool,
     /// Slip share and friction work per contact point.
     pub contacts: Vec<PointSummary>,
     /// Whether the curve turns back in frequency here.
@@ -198,12 +203,14 @@ impl Point {
             harmonics: 0,
             samples: None,
             residual: f64::NAN,
+            from_stuck: f64::NAN,
             iterations: 0,
             displacement: vec![c64::new(f64::NAN, 0.0); observed],
             contact_displacement: vec![c64::new(f64::NAN, 0.0); contacts],
             contact_force: vec![c64::new(f64::NAN, 0.0); contacts],
             error_estimate: vec![f64::NAN; observed],
             sampling_error: vec![f64::NAN; observed],
+            partial: false,
             contacts: vec![
                 PointSummary { slip_fraction: f64::NAN, dissipation: f64::NAN };
                 contacts

@@ -11,10 +11,12 @@ use super::{
     ContactLaw, Describing, Motion, Parameter, Parameters, Phase, PointState, PointSummary,
     SlipLoad,
 };
-use crate::fourier::{Harmonics, IntervalSums};
+use crate::fourier::{Basis, Harmonics, IntervalSums};
+use crate::solve::dot;
 use crate::Error;
 use faer::{c64, Mat};
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 /// A spring whose force is cubic in its elongation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,19 +41,19 @@ impl Cubic {
         Self::new(number("cubic", parameters, "stiffness")?)
     }
 
-    /// Calls `visit(angle, u)` at instants that integrate all products exactly, and returns the weight of
-    /// each in `1/π ∫ dθ` over the period.
-    fn integrate(motion: Motion<'_>, mut visit: impl FnMut(f64, f64)) -> f64 {
+    /// The basis at instants that integrate all products exactly, the elongation there, and the weight of each in
+    /// `1/π ∫ dθ` over the period.
+    fn sampled(motion: Motion<'_>) -> (Arc<Basis>, Vec<f64>, f64) {
         let harmonics = motion.table.harmonics();
         // Odd harmonics alone: products have even orders and repeat after half a period.
-        let half = harmonics.half_wave();
-        let most = 4 * harmonics.highest();
-        let count = if half { most / 2 + 1 } else { most + 1 };
-        for n in 0..count {
-            let theta = harmonics.span() * n as f64 / count as f64;
-            visit(theta, harmonics.jet(motion.displacement, theta)[0]);
+        let samples = 4 * harmonics.highest() + 2;
+        let count = if harmonics.half_wave() { samples / 2 } else { samples };
+        let basis = motion.table.basis(samples, count);
+        let mut elongation = vec![0.0; count];
+        for (function, own) in basis.functions().chunks_exact(count).zip(motion.displacement) {
+            elongation.iter_mut().zip(function).for_each(|(u, b)| *u += own * b);
         }
-        2.0 / count as f64
+        (basis, elongation, 2.0 / count as f64)
     }
 
     fn force(&self, u: f64) -> f64 {
@@ -64,21 +66,21 @@ impl Cubic {
 
     /// Series of `u³` times the stiffness, added with a sign.
     fn add_force(&self, motion: Motion<'_>, sign: f64, out: &mut [f64]) {
-        let harmonics = motion.table.harmonics();
-        let mut basis = vec![0.0; harmonics.slots()];
-        let mut sum = vec![0.0; basis.len()];
-        let weight = Self::integrate(motion, |theta, u| {
-            harmonics.basis(theta, &mut basis);
-            sum.iter_mut().zip(&basis).for_each(|(sum, b)| *sum += u.powi(3) * b);
-        });
-        harmonics.halve_means(&mut sum);
+        let (basis, elongation, weight) = Self::sampled(motion);
         let factor = sign * self.stiffness * weight;
-        out.iter_mut().zip(&sum).for_each(|(out, sum)| *out += factor * sum);
+        let cubes: Vec<f64> = elongation.iter().map(|u| factor * u * u * u).collect();
+        let functions = basis.functions().chunks_exact(cubes.len());
+        let mut series: Vec<f64> = functions.map(|function| dot(function, &cubes)).collect();
+        motion.table.harmonics().halve_means(&mut series);
+        out.iter_mut().zip(&series).for_each(|(out, own)| *out += own);
     }
 
     fn tangent(&self, motion: Motion<'_>, harmonics: &Harmonics, out: &mut [f64]) {
+        let (_, elongation, weight) = Self::sampled(motion);
         let mut sums = IntervalSums::new(harmonics);
-        let weight = Self::integrate(motion, |theta, u| sums.add_instant(theta, u * u));
+        let step = harmonics.span() / elongation.len() as f64;
+        let instants = elongation.iter().enumerate();
+        instants.for_each(|(n, u)| sums.add_instant(n as f64 * step, u * u));
         let size = harmonics.slots();
         sums.products(harmonics, -3.0 * self.stiffness * weight, |i, j, value| {
             out[i * size + j] = value;

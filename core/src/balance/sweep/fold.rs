@@ -8,9 +8,9 @@
 
 use super::branch::Walk;
 use super::forced_curve::ForcedCurve;
-use crate::balance::accuracy::Extension;
 use crate::balance::condensed::Condensed;
 use crate::balance::effort::Effort;
+use crate::balance::extension::Extension;
 use crate::balance::sampling::{finer_than, CAUTION};
 use crate::balance::settings::Resolution;
 use crate::balance::solution::{Point, PointStatus};
@@ -121,7 +121,7 @@ impl Walk<'_, '_> {
         }
         let harmonics = curve.series(z).harmonics;
         let given = self.balance.evaluated(None)?;
-        let effort = Effort::new(&given, harmonics.half_wave(), slipping, observe.len());
+        let effort = Effort::new(&given, harmonics.half_wave(), slipping, observe.len()).of(point);
         let extension = Extension::new(&effort, &harmonics, point.omega, f64::INFINITY);
         let climb = self.balance.control.samples_climb();
         let resolved = self.balance.evaluated(resolution.samples)?.resolves();
