@@ -2,6 +2,7 @@
 
 use super::modal_work::{of_step, products_within, suits, suits_laws};
 use super::ring::RingNewton;
+use super::settings::resolving_discarded;
 use super::solution::Point;
 use crate::fourier::Harmonics;
 use crate::model::Model;
@@ -37,8 +38,9 @@ const WORTH: f64 = 0.6;
 /// chains those at a tenth of that take two or three tangents, but with less than this the estimates of few harmonics
 /// do not reach the modes that harmonics above them meet.
 const OF_SOLUTION: [f64; 2] = [4.5, 6.0];
-/// The same of laws without slip, whose tangents are those of the way: half as many, and one of a nearly linear motion.
-const OF_SMOOTH: [f64; 2] = [1.3, 3.0];
+/// The same of laws without slip, whose tangents are those of the way: half as many, and less than one of a nearly linear
+/// motion.
+const OF_SMOOTH: [f64; 2] = [0.8, 3.0];
 
 /// Share of a second step of an estimate that looks at what the first one leaves.
 const OF_LOOK: f64 = 0.2;
@@ -71,7 +73,7 @@ pub(super) fn allowance(share: f64, steps: f64, orders: f64) -> f64 {
 pub(super) struct Effort<'a> {
     model: &'a Model,
     half_wave: bool,
-    slipping: usize,
+    pub(super) slipping: usize,
     /// Of a compliance for loads at all points, and at those that slip, and of the displacements of the observed
     /// degrees of freedom, at one order.
     of_order: [f64; 3],
@@ -81,6 +83,8 @@ pub(super) struct Effort<'a> {
     formed: bool,
     /// How far the solution is from the motion without slip: 1 where it is as far as it is large, and where nobody knows.
     far: f64,
+    /// Samples per period of the solution, if its estimate may take more.
+    samples: Option<usize>,
 }
 
 impl<'a> Effort<'a> {
@@ -97,7 +101,16 @@ impl<'a> Effort<'a> {
         let part = if part < WORTH * whole { part } else { whole };
         let of_order = [whole, part, displacement];
         let coupled = coupled_points(model);
-        Self { model, half_wave, slipping, of_order, coupled, formed: false, far: 1.0 }
+        Self {
+            model,
+            half_wave,
+            slipping,
+            of_order,
+            coupled,
+            formed: false,
+            far: 1.0,
+            samples: None,
+        }
     }
 
     /// The same for the solution that a point has, by how far it is from the motion without slip. Estimates
@@ -105,6 +118,11 @@ impl<'a> Effort<'a> {
     pub(super) fn of(&self, point: &Point) -> Self {
         let ring = self.compliance().ring().is_some();
         Self { far: if ring { 1.0 } else { point.from_stuck.min(1.0) }, ..*self }
+    }
+
+    /// The same for a march through so many samples, if estimates may take more.
+    pub(super) fn marched(&self, samples: Option<usize>) -> Self {
+        Self { samples, ..*self }
     }
 
     /// The same where Jacobians are formed in any case.
@@ -277,6 +295,12 @@ impl<'a> Effort<'a> {
     /// it, the farther the solution is from the motion without slip.
     pub(super) fn of_second(&self) -> f64 {
         OF_LOOK + (1.0 - OF_LOOK) * self.far
+    }
+
+    /// Of a Newton step in the harmonics up to `order` of an estimate.
+    pub(super) fn step_of_estimate(&self, order: usize) -> f64 {
+        let more = self.samples.map_or(1.0, |own| resolving_discarded(order) as f64 / own as f64);
+        more.max(1.0) * self.step(order)
     }
 
     /// Of a Newton step in the harmonics up to `highest`.

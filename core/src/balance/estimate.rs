@@ -9,11 +9,12 @@ use super::forced::ForcedBalance;
 use super::resonances::{self, Resonances};
 use super::sampling::{finer_than, sampling_errors};
 use super::scale::OF_HARMONICS;
-use super::settings::Method;
+use super::settings::{resolving_discarded, Method};
 use super::smooth_piece::IN_A_ROW;
 use super::solution::Point;
 use super::unknowns::Unknowns;
 use crate::fourier::Harmonics;
+use crate::model::Model;
 use crate::solve::{norm, System as _};
 use crate::Error;
 
@@ -35,6 +36,19 @@ impl<'a> ForcedBalance<'a> {
             }
         });
         counted.sum()
+    }
+
+    /// What the solution of a point and its estimate cost.
+    pub(super) fn effort<'m>(
+        &self,
+        model: &'m Model,
+        harmonics: &Harmonics,
+        point: &Point,
+    ) -> Effort<'m> {
+        let slipping = self.nonlinear_points(point);
+        let effort = Effort::new(model, harmonics.half_wave(), slipping, self.observe.len());
+        let samples = point.samples.filter(|_| self.control.samples_climb());
+        effort.of(point).marched(samples)
     }
 
     /// Writes the error estimate of a solution `x` of these equations; `false` if the analysis is to
@@ -100,14 +114,12 @@ impl<'a> ForcedBalance<'a> {
         point.partial = false;
         point.error_estimate = vec![0.0; self.observe.len()];
         point.sampling_error = vec![0.0; self.observe.len()];
-        let slipping = self.nonlinear_points(point);
-        let (half_wave, observed) = (harmonics.half_wave(), self.observe.len());
         let given = self.evaluated(None)?;
-        let effort = Effort::new(&given, half_wave, slipping, observed).of(point);
+        let effort = self.effort(&given, harmonics, point);
         // Points of a curve whose frequency is unknown take more than their steps.
         let counts = !self.control.samples_climb() && solved.is_none_or(|solved| !solved.slopes);
         let earned = counts.then(|| effort.earned(harmonics.highest()));
-        if slipping == 0 || solved.is_some_and(|solved| leaves_springs(solved, x)) {
+        if effort.slipping == 0 || solved.is_some_and(|solved| leaves_springs(solved, x)) {
             self.neighbour.save(point, earned);
             return Ok(true);
         }
@@ -149,13 +161,13 @@ impl<'a> ForcedBalance<'a> {
         point: &mut Point,
         (effort, whole): (&Effort<'_>, Extension<'_>),
     ) -> Result<Option<Vec<f64>>, Error> {
-        let follows = whole.has_two();
-        if follows && !self.control.samples_climb() {
+        if !self.control.samples_climb() {
             let found = self.continued(solution, point, (effort, &whole));
             if found.is_some() {
                 return Ok(found);
             }
         }
+        let follows = whole.has_two();
         let growth = if follows { self.neighbour.served(point) } else { None };
         let extension = if growth.is_some() { whole.beside() } else { whole };
         let Some(estimate) = self.extended(solution, solved, point, (effort, extension))? else {
@@ -211,14 +223,13 @@ impl<'a> ForcedBalance<'a> {
     /// the motion of one, relative to its vibration. Nothing without an answer.
     pub(crate) fn contact_error(&mut self, point: &Point) -> Option<f64> {
         let solution = point.unknowns.clone()?;
-        let slipping = self.nonlinear_points(point);
-        if slipping == 0 {
-            return Some(0.0);
-        }
         let given = self.evaluated(None).ok()?;
         let harmonics = &solution.harmonics;
-        let effort = Effort::new(&given, harmonics.half_wave(), slipping, self.observe.len());
-        let extension = Extension::new(&effort.of(point), harmonics, point.omega, f64::INFINITY);
+        let effort = self.effort(&given, harmonics, point);
+        if effort.slipping == 0 {
+            return Some(0.0);
+        }
+        let extension = Extension::new(&effort, harmonics, point.omega, f64::INFINITY);
         let mut point = point.clone();
         let found = self.extended(&solution, None, &mut point, (&effort, extension)).ok()??;
         Some(found.contacts)
@@ -275,8 +286,7 @@ impl<'a> ForcedBalance<'a> {
     /// long as nobody insists on them, must not hide harmonics.
     fn resolving(&mut self, point: &Point, order: usize) -> Result<(Evaluated<'a>, usize), Error> {
         if self.control.samples_climb() {
-            let least = (8 * (order + 1)).next_power_of_two();
-            let samples = point.samples.map(|samples| samples.max(least));
+            let samples = point.samples.map(|samples| samples.max(resolving_discarded(order)));
             return Ok((self.evaluated(samples)?, order));
         }
         let model = self.evaluated(point.samples)?;

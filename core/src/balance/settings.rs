@@ -99,6 +99,12 @@ pub(super) fn resolving(highest: usize) -> usize {
     (4 * (highest + 1)).next_power_of_two().max(FEWEST_SAMPLES)
 }
 
+/// Samples through which the harmonics up to `highest` that a solution discards are evaluated, unless they are given:
+/// twice as many.
+pub(super) fn resolving_discarded(highest: usize) -> usize {
+    resolving(2 * highest + 1)
+}
+
 /// Settings of a forced response.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {

@@ -9,10 +9,9 @@
 use super::branch::Walk;
 use super::forced_curve::ForcedCurve;
 use crate::balance::condensed::Condensed;
-use crate::balance::effort::Effort;
 use crate::balance::extension::Extension;
 use crate::balance::sampling::{finer_than, CAUTION};
-use crate::balance::settings::Resolution;
+use crate::balance::settings::{resolving_discarded, Resolution};
 use crate::balance::solution::{Point, PointStatus};
 use crate::balance::tangent::distance;
 use crate::balance::unknowns::Unknowns;
@@ -121,12 +120,12 @@ impl Walk<'_, '_> {
         }
         let harmonics = curve.series(z).harmonics;
         let given = self.balance.evaluated(None)?;
-        let effort = Effort::new(&given, harmonics.half_wave(), slipping, observe.len()).of(point);
+        let effort = self.balance.effort(&given, &harmonics, point);
         let extension = Extension::new(&effort, &harmonics, point.omega, f64::INFINITY);
         let climb = self.balance.control.samples_climb();
         let resolved = self.balance.evaluated(resolution.samples)?.resolves();
         let extension = extension.within(if climb { usize::MAX } else { resolved });
-        let least = if climb { (8 * (extension.highest + 1)).next_power_of_two() } else { 0 };
+        let least = if climb { resolving_discarded(extension.highest) } else { 0 };
         let samples = resolution.samples.map(|samples| samples.max(least));
         let more = Resolution { harmonics: extension.highest, samples };
         let change = self.change_to(point, ways, more)?;
