@@ -35,9 +35,10 @@ const WORTH: f64 = 0.6;
 
 /// Newton steps that the solution of a point with slip takes from the motion without slip, the last ones without a
 /// tangent of their own: more, the farther that is, from none to as far as the motion is large. Measured on 500 random
-/// chains those at a tenth of that take two or three tangents, but with less than this the estimates of few harmonics
-/// do not reach the modes that harmonics above them meet.
-const OF_SOLUTION: [f64; 2] = [4.5, 6.0];
+/// chains those at a tenth of that take two or three tangents.
+const OF_SOLUTION: [f64; 2] = [3.0, 6.0];
+/// The same of few harmonics: with less than this their estimates do not reach the modes that harmonics above them meet.
+const OF_FEW: [f64; 2] = [4.5, 6.0];
 /// The same of laws without slip, whose tangents are those of the way: half as many, and less than one of a nearly linear
 /// motion.
 const OF_SMOOTH: [f64; 2] = [0.8, 3.0];
@@ -287,7 +288,11 @@ impl<'a> Effort<'a> {
 
     /// Of the Newton steps of a solution from the motion without slip.
     pub(super) fn steps(&self, highest: usize) -> f64 {
-        let [near, far] = if self.slips() { OF_SOLUTION } else { OF_SMOOTH };
+        let [near, far] = match highest {
+            _ if !self.slips() => OF_SMOOTH,
+            ..=FEW => OF_FEW,
+            _ => OF_SOLUTION,
+        };
         (near + (far - near) * self.far) * self.step(highest)
     }
 
