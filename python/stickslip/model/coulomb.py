@@ -138,15 +138,17 @@ class Coulomb(Contact):
         if nodes.size > _SPACE:
             raise ModelError(
                 f"{_ENTRY}: dofs: {nodes.size} names per node; give 3 in space, 2 in a plane, or "
-                "the tangential ones with normal=None"
+                "the tangential ones without a normal"
             )
         shape = nodes.shape
         vectors = unit_normals(normal, shape, _ENTRY)
         preload, gap = _closure(preload, gap, constant=normal is None)
         if (normal_stiffness is None) != (normal is None):
+            one = f"normal: {brief(normal)} without normal_stiffness"
+            if normal is None:
+                one = f"normal_stiffness: {brief(normal_stiffness)} without normal"
             raise ModelError(
-                f"{_ENTRY}: normal_stiffness: {brief(normal_stiffness)} with normal="
-                f"{brief(normal)}; give both, or neither where the normal load is constant"
+                f"{_ENTRY}: {one}; give both, or neither where the normal load is constant"
             )
         given = {
             "friction": friction,

@@ -24,8 +24,8 @@ def unit_normals(value: object, shape: tuple[int, ...], entry: str) -> Vectors |
     if value is None:
         if size > 2:
             raise ModelError(
-                f"{entry}: normal: None, a constant load, with 3 dofs per node; give the one or "
-                "two tangential ones, or the normal"
+                f"{entry}: no normal, a constant load, with 3 dofs per node; give the one or two "
+                "tangential ones, or the normal"
             )
         return None
     try:
@@ -37,7 +37,7 @@ def unit_normals(value: object, shape: tuple[int, ...], entry: str) -> Vectors |
         many = "" if len(shape) == 1 else ", or one such list per node"
         raise ModelError(
             f"{entry}: normal: {brief(value)}; give {max(size, 2)} numbers, as many as a node has "
-            f"dofs{many}, or None for a constant load"
+            f"dofs{many}, or leave it out for a constant load"
         )
     vectors = vectors.astype(np.float64)
     # Numbers far from 1 would overflow when squared.
