@@ -10,7 +10,7 @@ import unicodedata
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import suppress
 from importlib import import_module
-from numbers import Integral, Real
+from numbers import Complex, Integral, Real
 from pathlib import Path
 from typing import Any, Protocol, TypeAlias, TypeVar, runtime_checkable
 
@@ -265,6 +265,16 @@ def real_number(value: object, entry: str, *, finite: bool = True) -> float:
         kind = "finite number" if finite else "number"
         raise EntryError(entry, f": {number} is not a {kind}; give a real number in SI units")
     return number
+
+
+def finite_complex(value: object) -> complex | None:
+    """Return a finite number as a complex one; None of anything else."""
+    if isinstance(value, bool) or not isinstance(value, Complex):
+        return None
+    with suppress(OverflowError):
+        number = complex(value)
+        return number if np.isfinite(number) else None
+    return None
 
 
 def whole_number(value: object, entry: str, *, smallest: int = 0, largest: int = MAX_COUNT) -> int:

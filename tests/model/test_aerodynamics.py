@@ -245,6 +245,7 @@ def test_the_s_curve():
         (lambda: ss.InfluenceCoefficients({}, dof="tip"), "is no mapping|influence"),
         (lambda: ss.InfluenceCoefficients({0.5: 1.0}, dof="tip"), "no whole number"),
         (lambda: ss.InfluenceCoefficients({0: np.inf}, dof="tip"), "no finite number"),
+        (lambda: ss.InfluenceCoefficients({0: 10**400}, dof="tip"), "no finite number"),
         (lambda: ss.InfluenceCoefficients({0: 1.0}), "exactly one"),
         (lambda: ss.InfluenceCoefficients({0: 1.0}, dof="tip", mode=0), "exactly one"),
         (

@@ -8,12 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from numbers import Real
 from typing import NamedTuple, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.checks import as_list, brief, set_fields
+from stickslip.checks import as_list, brief, finite_complex, set_fields
 from stickslip.errors import ModelError
 from stickslip.model.structure import Structure
 from stickslip.units import physical_number
@@ -134,7 +135,7 @@ class ModalForces:
         try:
             speeds = np.array(self.speeds, dtype=np.float64)
             values = np.array(self.values, dtype=np.complex128)
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, OverflowError):
             raise ModelError("modal forces: give numbers of shape (S, n) and speeds (S,)") from None
         if speeds.ndim != 1 or values.ndim != 2 or len(values) != speeds.size or not values.size:
             raise ModelError(
@@ -178,14 +179,13 @@ def _kept(given: object, name: str, *, real: bool) -> dict[int, complex]:
     for place, value in pairs:
         if isinstance(place, bool) or not isinstance(place, int | np.integer):
             raise ModelError(f"{name}: nodal diameter {brief(place)} is no whole number")
-        kinds = (int, float, np.integer, np.floating)
-        known = kinds if real else (*kinds, complex, np.complexfloating)
-        if isinstance(value, bool) or not isinstance(value, known) or not np.isfinite(value):
+        number = finite_complex(value)
+        if number is None or (real and not isinstance(value, Real)):
             raise ModelError(
                 f"{name}: {brief(value)} at nodal diameter {place}; give a finite "
                 f"{'real' if real else 'real or complex'} number"
             )
-        kept[int(place)] = float(value.real) if real else complex(value)
+        kept[int(place)] = number.real if real else number
     if not kept:
         raise ModelError(f"{name}: none; give a number per nodal diameter")
     return kept

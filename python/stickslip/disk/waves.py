@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from numbers import Complex
 from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.checks import brief, members, set_fields, text, whole_number
+from stickslip.checks import brief, finite_complex, members, set_fields, text, whole_number
 from stickslip.disk.aerodynamics import (
     AerodynamicDamping,
     AerodynamicForces,
@@ -314,12 +313,13 @@ class InfluenceCoefficients:
         for place, value in self.coefficients.items():
             if isinstance(place, bool) or not isinstance(place, int | np.integer):
                 raise ModelError(f"influence coefficients: place {brief(place)} is no whole number")
-            if not isinstance(value, Complex) or not np.isfinite(complex(value)):
+            number = finite_complex(value)
+            if number is None:
                 raise ModelError(
                     f"influence coefficient {place}: {brief(value)} is no finite number; give L_j "
                     "in N/m"
                 )
-            checked[int(place)] = complex(value)
+            checked[int(place)] = number
         if (self.dof is None) == (self.mode is None):
             raise ModelError("influence coefficients: give exactly one of dof and mode")
         if self.dof is not None:
