@@ -112,6 +112,17 @@ def test_stiff_dampers_tend_to_the_rigid_limit(mass):
     assert one.amplitude == pytest.approx(4 * 246.048 / (np.pi * 7699.054 * one.omega))
 
 
+@pytest.mark.parametrize(
+    "change", [{"mass": 1e-228, "stiffness": 1e281}, {"stiffness": 1e-125, "damping": -1e-283}]
+)
+def test_closed_forms_refuse_what_numbers_do_not_hold(change):
+    values = {"mass": 1.0, "damping": -0.1, "stiffness": 1.0, "slip_force": 1.0} | change
+    with pytest.raises(ss.ModelError, match="of too different size for numbers"):
+        ss.rigid_limit_cycle(**values)
+    with pytest.raises(ss.ModelError, match="of too different size for numbers"):
+        ss.single_harmonic_cycles(**values, contact_stiffness=1e308)
+
+
 def test_exact_orbits_go_on_in_time(mass):
     model, negative = mass
     lco = ss.limit_cycles(model, negative, ratio=[2.0], method="exact")

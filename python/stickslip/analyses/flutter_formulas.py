@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from math import acos, pi, sin, sqrt, tanh
+from collections.abc import Callable
+from contextlib import suppress
+from math import acos, isfinite, pi, sin, sqrt, tanh
 from typing import NamedTuple
+
+import numpy as np
 
 from stickslip.errors import ModelError
 from stickslip.units import physical_number
@@ -70,17 +74,16 @@ def single_harmonic_cycles(
 
     # share = onset / A runs from 0, endless slip, to 1, the onset of slip; the excess is positive
     # at both ends, and has one minimum in between.
-    try:
+    def cycles() -> tuple[SingleCycle, ...]:
         found = minimize_scalar(excess, bounds=(0, 1), method="bounded", options={"xatol": 1e-12})
         if excess(found.x) > 0.0:
             return ()
         shares = [brentq(excess, found.x, end, xtol=1e-300, rtol=1e-15) for end in (1.0, 0.0)]
-    except (OverflowError, RuntimeError):
-        raise ModelError(
-            f"single_harmonic_cycles: mass {m:g}, stiffness {k:g} and {kd:g}, damping {c:g} are of "
-            "too different size for numbers; look at their units"
-        ) from None
-    return tuple(SingleCycle(onset / share, omega(share)) for share in shares)
+        return tuple(SingleCycle(onset / share, omega(share)) for share in shares)
+
+    return _in_numbers(
+        cycles, mass=m, damping=c, stiffness=k, contact_stiffness=kd, slip_force=limit
+    )
 
 
 def rigid_limit_cycle(
@@ -120,14 +123,33 @@ def rigid_limit_cycle(
     """
     m, k, limit = _positive(mass=mass, stiffness=stiffness, slip_force=slip_force)
     c = _negative(damping)
-    free = sqrt(k / m)
-    if single_harmonic:
-        return SingleCycle(-4.0 * limit / (pi * c * free), free)
-    rate = -0.5 * c / m
-    if rate >= free:
+
+    def cycle() -> tuple[SingleCycle, ...]:
+        free = sqrt(k / m)
+        if single_harmonic:
+            return (SingleCycle(-4.0 * limit / (pi * c * free), free),)
+        rate = -0.5 * c / m
+        if rate >= free:
+            return ()
+        omega = sqrt(free**2 - rate**2)
+        return (SingleCycle(limit / k / tanh(0.5 * rate * pi / omega), omega),)
+
+    found = _in_numbers(cycle, mass=m, damping=c, stiffness=k, slip_force=limit)
+    if not found:
         raise ModelError(f"damping: {c:g} kg/s is overcritical, so that nothing oscillates")
-    omega = sqrt(free**2 - rate**2)
-    return SingleCycle(limit / k / tanh(0.5 * rate * pi / omega), omega)
+    return found[0]
+
+
+def _in_numbers(
+    cycles: Callable[[], tuple[SingleCycle, ...]], **values: float
+) -> tuple[SingleCycle, ...]:
+    """Return limit cycles, or refuse the values that they do not follow from in floats."""
+    with np.errstate(all="ignore"), suppress(ArithmeticError, RuntimeError, ValueError):
+        found = cycles()
+        if all(isfinite(number) and number > 0.0 for one in found for number in one):
+            return found
+    listed = ", ".join(f"{name} {value:g}" for name, value in values.items())
+    raise ModelError(f"{listed}: of too different size for numbers; look at their units")
 
 
 _UNITS = defaultdict(lambda: "N/m", mass="kg", slip_force="N")
