@@ -2,7 +2,6 @@
 
 use super::modal_work::{of_step, products_within, suits, suits_laws};
 use super::ring::RingNewton;
-use super::settings::resolving_discarded;
 use super::solution::Point;
 use crate::fourier::Harmonics;
 use crate::model::Model;
@@ -17,8 +16,6 @@ const ALLOWED: f64 = 1.3;
 /// curve.
 const FEW: usize = 5;
 const ALLOWED_OF_FEW: [f64; 2] = [0.85, 0.9];
-/// The same of marches whose samples are chosen as well: to know what these leave takes a finer march.
-const ALLOWED_OF_MARCHES: f64 = 0.85;
 /// The same of a few nodes or faces, whose laws and tangents take more than is reckoned.
 const ALLOWED_OF_COUPLED: f64 = 2.0;
 /// The same of a ring, of which nearly all is reckoned, by itself and along a curve.
@@ -86,8 +83,6 @@ pub(super) struct Effort<'a> {
     formed: bool,
     /// How far the solution is from the motion without slip: 1 where it is as far as it is large, and where nobody knows.
     far: f64,
-    /// Samples per period of the solution, if its estimate may take more.
-    samples: Option<usize>,
 }
 
 impl<'a> Effort<'a> {
@@ -104,16 +99,7 @@ impl<'a> Effort<'a> {
         let part = if part < WORTH * whole { part } else { whole };
         let of_order = [whole, part, displacement];
         let coupled = coupled_points(model);
-        Self {
-            model,
-            half_wave,
-            slipping,
-            of_order,
-            coupled,
-            formed: false,
-            far: 1.0,
-            samples: None,
-        }
+        Self { model, half_wave, slipping, of_order, coupled, formed: false, far: 1.0 }
     }
 
     /// The same for the solution that a point has, by how far it is from the motion without slip. Estimates
@@ -121,11 +107,6 @@ impl<'a> Effort<'a> {
     pub(super) fn of(&self, point: &Point) -> Self {
         let ring = self.compliance().ring().is_some();
         Self { far: if ring { 1.0 } else { point.from_stuck.min(1.0) }, ..*self }
-    }
-
-    /// The same for a march through so many samples, if estimates may take more.
-    pub(super) fn marched(&self, samples: Option<usize>) -> Self {
-        Self { samples, ..*self }
     }
 
     /// The same where Jacobians are formed in any case.
@@ -188,8 +169,6 @@ impl<'a> Effort<'a> {
             ALLOWED_OF_MANY
         } else if coupled {
             ALLOWED_OF_COUPLED
-        } else if self.samples.is_some() {
-            ALLOWED_OF_MARCHES
         } else if highest > FEW {
             ALLOWED
         } else {
@@ -304,12 +283,6 @@ impl<'a> Effort<'a> {
     /// it, the farther the solution is from the motion without slip.
     pub(super) fn of_second(&self) -> f64 {
         OF_LOOK + (1.0 - OF_LOOK) * self.far
-    }
-
-    /// Of a Newton step in the harmonics up to `order` of an estimate.
-    pub(super) fn step_of_estimate(&self, order: usize) -> f64 {
-        let more = self.samples.map_or(1.0, |own| resolving_discarded(order) as f64 / own as f64);
-        more.max(1.0) * self.step(order)
     }
 
     /// Of a Newton step in the harmonics up to `highest`.

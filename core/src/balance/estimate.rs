@@ -46,9 +46,7 @@ impl<'a> ForcedBalance<'a> {
         point: &Point,
     ) -> Effort<'m> {
         let slipping = self.nonlinear_points(point);
-        let effort = Effort::new(model, harmonics.half_wave(), slipping, self.observe.len());
-        let samples = point.samples.filter(|_| self.control.samples_climb());
-        effort.of(point).marched(samples)
+        Effort::new(model, harmonics.half_wave(), slipping, self.observe.len()).of(point)
     }
 
     /// Writes the error estimate of a solution `x` of these equations; `false` if the analysis is to

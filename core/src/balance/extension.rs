@@ -105,8 +105,8 @@ impl<'a> Extension<'a> {
         let later = effort.with_more_slip();
         let account = |order: usize| {
             let [displacements, compliances] = effort.extended(highest, order);
-            let first = compliances + displacements + effort.step_of_estimate(order);
-            Account { first, step: displacements + later.step_of_estimate(order) }
+            let first = compliances + displacements + effort.step(order);
+            Account { first, step: displacements + later.step(order) }
         };
         let budget =
             |order: usize| allowance(effort.allowed([highest, order]), steps, orders).min(credit);
@@ -136,7 +136,7 @@ impl<'a> Extension<'a> {
         let steps = if farthest.is_some() { Steps::Two } else { Steps::One };
         // Each of two steps may take half of what is left.
         let left = (budget(order) - reckoned(order)).max(0.0);
-        let of_step = effort.step_of_estimate(order) + 0.5 * left;
+        let of_step = effort.step(order) + 0.5 * left;
         let products = effort.products_within(of_step, [highest, order]);
         let (formed, part) = (effort.is_formed(), effort.takes_part());
         let (account, single) = (account(order), if single > 0.0 { left } else { 0.0 });
