@@ -317,6 +317,20 @@ def test_estimates_go_on_along_smooth_pieces() -> None:
         assert (errors[:, found] / own).max() < 2.02
 
 
+@pytest.mark.parametrize("harmonics", [1, 3])
+def test_estimates_go_on_where_the_account_affords_none(harmonics: int) -> None:
+    # Solutions of hardly nonlinear motions take one step, the least extended balance more.
+    names = [f"x{i}" for i in range(6)]
+    stiffness = 2e4 * np.eye(6) - 1e4 * np.eye(6, k=1) - 1e4 * np.eye(6, k=-1)
+    chain = ss.Structure(np.eye(6), stiffness, ss.ModalDamping(1e-3), names)
+    springs = [ss.Cubic(name, stiffness=1e6 * 4.0**i) for i, name in enumerate(names)]
+    model = ss.Model(chain, springs, [ss.Force("x0", 1.0)])
+    omega = ss.natural_frequencies(model)[0] * np.linspace(0.9, 1.0, 61)
+    curve = ss.forced_response(model, omega, harmonics, stability=False)
+    errors = np.array([curve.error_estimate(dof) for dof in curve.dofs])
+    assert len(carried_on(errors, 2)) > 20
+
+
 def test_automatic_harmonics_lean_on_the_points_beside() -> None:
     beam, omega = ss.reference.snecma_beam(20.313), np.linspace(200.0, 220.0, 41)
     curve = ss.forced_response(beam, omega, tolerance=1e-2)

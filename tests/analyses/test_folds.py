@@ -198,7 +198,7 @@ def test_stable_motions_stay_and_unstable_ones_are_left(name):
     model = system.model()
     frf = ss.forced_response(model, span, tolerance=1e-4)
     first, last = sorted(frf.folds)
-    # The harmonics that a tolerance of 1e-4 discards move a fold by some 1e-6 of its frequency.
+    # Discarded harmonics move a fold: which side a point so close beside it is on, they decide.
     apart = np.min([np.abs(frf.omega / frf.omega[fold] - 1.0) for fold in (first, last)], axis=0)
     between = np.arange(first + 1, last)
     assert (frf.stability[between[apart[between] > 1e-5]] == "unstable").all()

@@ -148,17 +148,12 @@ impl ForcedBalance<'_> {
     /// Errors of which one that is exceeded asks for more harmonics, if these are chosen and there are more. Where laws
     /// are not monotone the whole estimate tells motions apart.
     pub(super) fn enough_for_more(&mut self, point: &Point) -> Vec<f64> {
-        if !self.control.harmonics_climb() || !self.model.is_monotone() {
+        let more = self.control.harmonics_climb() && self.control.has_more(point.harmonics);
+        if !more || !self.model.is_monotone() {
             return Vec::new();
         }
         self.scale.include(point);
-        let more = self.control.has_more(point.harmonics);
-        let tolerance = self.settings.tolerance;
-        if more {
-            self.scale.most(point, OF_HARMONICS, tolerance)
-        } else {
-            Vec::new()
-        }
+        self.scale.most(point, OF_HARMONICS, self.settings.tolerance)
     }
 
     /// Order beyond which no mode takes part; there is none where degrees of freedom without mass follow all of them.
