@@ -274,9 +274,7 @@ def test_estimates_along_a_curve_are_those_of_its_frequencies(harmonics: int) ->
             error = true.coefficients(dof)[slips].copy()
             error[:, : harmonics + 1] -= curve.coefficients(dof)[slips]
             assert ((ratio > 0.4) | (estimate >= np.abs(error).sum(axis=1))).all()
-            # One of fewer harmonics is raised to what more of them say beside it.
-            beside = np.lib.stride_tricks.sliding_window_view(np.pad(own, 1), 3).max(axis=1)
-            assert (estimate / beside[slips]).max() < 2.5
+            assert ratio.max() < 2.5
             assert np.median(ratio) == pytest.approx(1.0, abs=0.1)
 
 
@@ -314,6 +312,7 @@ def test_estimates_go_on_along_smooth_pieces() -> None:
         # less is not below the error.
         seen = errors[:, found] >= np.abs(missed).sum(axis=2)
         assert ((errors[:, found] / own > 0.45) | seen).all()
+        assert (errors[:, found] / own).min() > 0.4
         assert (errors[:, found] / own).max() < 2.02
 
 

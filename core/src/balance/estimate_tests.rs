@@ -76,6 +76,9 @@ fn estimates_of_nearly_linear_motions_take_less() {
     };
     let steps = [0.0, 0.1, 1.0, 7.0, f64::NAN].map(|far| at(far).steps(5));
     assert!(steps[0] < steps[1] && steps[1] < 0.8 * steps[2]);
+    // More harmonics need fewer steps to reach the modes above them.
+    let of_step = |highest: usize| at(0.0).steps(highest) / effort.step(highest);
+    assert!(of_step(7) < 0.8 * of_step(5));
     assert_eq!([steps[3], steps[4]], [steps[2], effort.steps(5)]);
     // The look at what the first step leaves is nearly all of the second one.
     assert!(at(0.0).of_second() < 0.5 && at(1.0).of_second() == 1.0);
